@@ -1,0 +1,55 @@
+// The exact event-driven engine.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sandglass/core/frame.h"
+#include "sandglass/core/state.h"
+#include "sandglass/dynamics/event.h"
+
+namespace sandglass {
+
+/// Free choices of the engine. None of them changes a bit of the result; 0 means "let the program choose".
+struct Tuning {
+  double skin = 0;             ///< width of the neighbour lists beyond contact, in R_s
+  double cell_size = 0;        ///< least side of a cell of the look-up grid, in R_s
+  double bucket_events = 0;    ///< mean number of events in a fine bucket of the calendar
+};
+
+/// Event-driven dynamics of a State. Neighbour lists find who may meet, a calendar of buckets finds who meets next.
+/// Throws InputError for a state that cannot be run exactly (overlap, box too small, disk outside the box, NaN).
+class Simulation {
+ public:
+  explicit Simulation(State state, const Tuning& tuning = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  /// Does every event at or before physical time `end` (since the start of the run, not the epoch).
+  void run_until(double end);
+
+  [[nodiscard]] double time() const;
+  [[nodiscard]] const Tally& tally() const;
+  [[nodiscard]] std::size_t size() const;
+
+  /// A copy of the run at this moment; a new Simulation made from it goes on with the same bits.
+  [[nodiscard]] State state() const;
+  void make_frame(Frame& frame) const;
+
+  /// From now on appends every physical event to `log` (for tests; nullptr stops it).
+  void set_event_log(std::vector<Event>* log);
+
+  /// Work that is bookkeeping, not physics: how the engine's time was spent.
+  struct Bookkeeping {
+    std::uint64_t predictions = 0, orphans = 0, list_rebuilds = 0, wide_partner_searches = 0;
+  };
+  [[nodiscard]] Bookkeeping bookkeeping() const;
+
+ private:
+  class Engine;
+  std::unique_ptr<Engine> engine_;
+};
+
+}  // namespace sandglass
