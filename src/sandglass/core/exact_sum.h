@@ -9,7 +9,7 @@ namespace sandglass {
 
 /// Fixed-point accumulator: every term is rounded once to a multiple of the quantum 2^-44 (5.7e-14), after which
 /// addition is that of 128-bit integers: exact, associative, commutative. Threads, chunks and resumed runs therefore
-/// give the same bits. Terms up to 2^19 in magnitude take the fast path; the sum may reach 2^83 (1e25).
+/// give the same bits. Terms below 128 in magnitude take the fast path; a term or the sum may reach 2^82 (5e24).
 class ExactSum {
  public:
   static constexpr double quantum = 0x1p-44;
@@ -39,13 +39,13 @@ class ExactSum {
   [[nodiscard]] std::uint64_t low() const { return static_cast<std::uint64_t>(total_); }
   static ExactSum from_halves(std::int64_t high, std::uint64_t low) {
     ExactSum sum;
-    sum.total_ = static_cast<Int128>((static_cast<unsigned __int128>(static_cast<std::uint64_t>(high)) << 64) | low);
+    sum.total_ = (static_cast<Int128>(high) << 64) | low;  // C++20: a left shift of a negative is defined
     return sum;
   }
 
  private:
   __extension__ using Int128 = __int128;
-  void add_large(double term);
+  void add_large(double term);  // throws RunError for a NaN or a term beyond 2^82
 
   Int128 total_ = 0;
 };

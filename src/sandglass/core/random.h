@@ -13,7 +13,7 @@ enum class Stream : std::uint64_t { positions = 1, velocities = 2, kicks = 3, pr
 /// Four independent 64-bit words. [Salmon et al., SC11 (2011)]
 std::array<std::uint64_t, 4> random_words(std::uint64_t seed, Stream stream, std::uint64_t id, std::uint64_t count);
 
-/// Uniform in (0, 1): the middle of one of 2^53 equal cells; never 0 or 1.
+/// Uniform in (0, 1): the middle of one of 2^52 equal cells; never 0 or 1.
 double uniform(std::uint64_t word);
 
 /// Exponential with mean 1: -ln u.

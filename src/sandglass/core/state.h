@@ -24,7 +24,7 @@ struct Mixture {
 /// The canonical record of one disk. It changes only at the disk's own contacts, kicks and transits and at epochs, so
 /// that it is a function of the physics alone. Times are counted from the start of the current epoch.
 struct Disk {
-  double x = 0, y = 0;    ///< centre at `time`; in [0, L) when last wrapped (start, transit, epoch), not in between
+  double x = 0, y = 0;    ///< centre at `time`, in [0, L)
   double vx = 0, vy = 0;  ///< velocity since `time`
   double time = 0;        ///< when this record last changed
   double last_contact = -std::numeric_limits<double>::infinity();  ///< time of the latest collision (for the TC model)
@@ -112,6 +112,9 @@ std::array<double, 2> total_momentum(const State& state);
 /// Gives every disk a Gaussian velocity of temperature T (component variance T/m), removes the total momentum and
 /// scales so that T is exactly `temperature`. Draws from the stream `velocities` of `state.seed`.
 void draw_velocities(State& state, double temperature);
+
+/// Rate at which each disk's own kick clock rings: f/2 where a kick serves a pair, f for single kicks, 0 without drive.
+double clock_rate(const Drive& drive);
 
 /// Starts every disk's kick clock at `state.now` for the drive set in the state (or stops it where there is none).
 void start_kick_clocks(State& state);

@@ -48,8 +48,8 @@ class Simulation {
   [[nodiscard]] Bookkeeping bookkeeping() const;
 
  private:
-  class Engine;
-  std::unique_ptr<Engine> engine_;
+  struct Run;
+  std::unique_ptr<Run> run_;
 };
 
 }  // namespace sandglass

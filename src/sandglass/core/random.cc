@@ -1,0 +1,70 @@
+#include "sandglass/core/random.h"
+
+#include <Random123/philox.h>
+
+#include <bit>
+#include <cmath>
+
+namespace sandglass {
+
+std::array<std::uint64_t, 4> random_words(std::uint64_t seed, Stream stream, std::uint64_t id, std::uint64_t count) {
+  const r123::Philox4x64::ctr_type counter{{id, count, 0, 0}};
+  const r123::Philox4x64::key_type key{{seed, static_cast<std::uint64_t>(stream)}};
+  const auto words = r123::Philox4x64{}(counter, key);
+  return {words[0], words[1], words[2], words[3]};
+}
+
+double uniform(std::uint64_t word) {
+  // 52 bits, so that k + 1/2 is exact and never rounds up to 1.
+  return (static_cast<double>(word >> 12) + 0.5) * 0x1p-52;
+}
+
+double exponential(std::uint64_t word) { return -portable_log(uniform(word)); }
+
+std::array<double, 2> gaussian_pair(std::uint64_t word1, std::uint64_t word2) {
+  const double radius = std::sqrt(2 * exponential(word1));
+  const auto [sine, cosine] = portable_sincos_turns(uniform(word2));
+  return {radius * cosine, radius * sine};
+}
+
+double portable_log(double u) {
+  // u = 2^e m with m in [1/sqrt 2, sqrt 2); ln m = 2 atanh(s), s = (m - 1)/(m + 1), |s| < 0.1716. The series in
+  // s^2 < 0.0295 is cut after s^21: the next term is below 0.0295^11 / 23 < 1e-18 of the first.
+  constexpr double ln2_high = 0x1.62e42fefa0000p-1;  // 40 bits, so that e * ln2_high is exact
+  constexpr double ln2_low = 0x1.cf79abc9e3b3ap-40;
+  int exponent = 0;
+  double m = std::frexp(u, &exponent);
+  if (m < 0x1.6a09e667f3bcdp-1) {
+    m *= 2;
+    exponent -= 1;
+  }
+  const double f = m - 1;
+  const double s = f / (m + 1);
+  const double s2 = s * s;
+  double series = 1.0 / 21;
+  for (int k = 19; k >= 3; k -= 2) series = series * s2 + 1.0 / k;
+  series *= s2;
+  const double e = exponent;
+  return e * ln2_high + (2 * s + (2 * s * series + e * ln2_low));
+}
+
+std::array<double, 2> portable_sincos_turns(double turns) {
+  // Nearest quarter turn out, exactly; what is left, |r| <= 1/8 turn, goes into Taylor series cut where the next term
+  // is below 1e-18 ((pi/4)^19/19! = 8e-20, (pi/4)^18/18! = 2e-18).
+  const double quarters = std::nearbyint(turns * 4);
+  const double r = (turns - quarters * 0.25) * 0x1.921fb54442d18p+2;
+  const double r2 = r * r;
+  double sine = 0, cosine = 0;
+  for (int k = 17; k >= 3; k -= 2) sine = (sine + 1) * (-r2 / (k * (k - 1)));
+  sine = r + r * sine;
+  for (int k = 16; k >= 2; k -= 2) cosine = (cosine + 1) * (-r2 / (k * (k - 1)));
+  cosine += 1;
+  switch (static_cast<std::int64_t>(quarters) & 3) {
+    case 0: return {sine, cosine};
+    case 1: return {cosine, -sine};
+    case 2: return {-sine, -cosine};
+    default: return {-cosine, sine};
+  }
+}
+
+}  // namespace sandglass

@@ -1,0 +1,427 @@
+// The hot loop. Invariants, at every moment between two events:
+//  1. A record is as its disk's own last contact, kick, transit or epoch left it. Nothing else writes to its flight.
+//  2. next/next_time/partner of a disk is the earliest, in canonical order, of its contacts with listed disks, its own
+//     kick, its transit and the expiry of its list, as computed from the records as they are now - or of an earlier
+//     contact that a listed partner knows of and will be found first.
+//  3. Every disk whose next_time is finite has an entry in the calendar that states it.
+//  4. Two disks that overlap or touch are in each other's lists; lists are symmetric.
+#include "sandglass/dynamics/engine.h"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "sandglass/dynamics/calendar.h"
+#include "sandglass/dynamics/contact.h"
+#include "sandglass/dynamics/drive.h"
+#include "sandglass/dynamics/neighbours.h"
+#include "sandglass/dynamics/record.h"
+
+namespace sandglass {
+inline namespace SANDGLASS_ISA {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+class IsaEngine final : public Engine {
+ public:
+  IsaEngine(State& state, const Tuning& tuning)
+      : state_(state), tuning_(tuning), box_(state.box_length, state.mixture) {}
+
+  Overlap load(const std::uint32_t* order) override;
+  void store(Disk* disks) const override;
+  void run(double end) override;
+  void make_frame(double* x, double* y, double* vx, double* vy) const override;
+
+ private:
+  void on_contact(std::uint32_t i, std::uint32_t j, double t);
+  void on_kick(std::uint32_t i, double t);
+  void on_transit(std::uint32_t i, double t);
+  void on_list_expiry(std::uint32_t i, double t);
+
+  template <bool collect_orphans>
+  void predict(std::uint32_t i);
+  void predict_changed(std::uint32_t i, std::uint32_t j);
+  [[nodiscard]] double list_expiry(const Record& disk, const ColdRecord& cold) const;
+  [[nodiscard]] bool within_leash(const Record& disk, const ColdRecord& cold, double t) const;
+
+  std::uint32_t nearest_partner(std::uint32_t i, double t);
+  std::uint32_t partner_within_reach(std::uint32_t i, double t, const Kick& kick);
+
+  [[nodiscard]] bool before(std::uint32_t a, std::uint32_t b) const;
+  void log_event(EventKind kind, double t, std::uint32_t i, std::uint32_t j) const;
+  [[nodiscard]] double mean_lead() const;
+  [[nodiscard]] double default_skin() const;
+
+  [[nodiscard]] double mass(const Record& disk) const { return state_.mixture.mass[disk.species]; }
+  [[nodiscard]] double largest_radius() const { return box_.length / 4 - box_.transit; }
+
+  State& state_;
+  Tuning tuning_;
+  Box box_;
+  std::size_t size_ = 0;
+  Array<Record> records_;
+  Array<ColdRecord> cold_;
+  Neighbours neighbours_;
+  Calendar calendar_;
+  GrowingArray<std::uint32_t> orphans_;     // disks whose predicted partner has just changed
+  GrowingArray<std::uint32_t> candidates_;  // possible partners of a kick
+};
+
+void IsaEngine::run(double end) {
+  for (;;) {
+    const std::uint32_t i =
+        calendar_.pop(&records_[0], end, [this](std::uint32_t a, std::uint32_t b) { return before(a, b); });
+    if (i == no_disk) break;
+    const Record& disk = records_[i];
+    const double t = disk.next_time;
+    switch (disk.next) {
+      case Next::contact: on_contact(i, disk.partner, t); break;
+      case Next::kick: on_kick(i, t); break;
+      case Next::transit: on_transit(i, t); break;
+      case Next::list_expiry: on_list_expiry(i, t); break;
+    }
+  }
+  state_.now = end;
+}
+
+void IsaEngine::on_contact(std::uint32_t i, std::uint32_t j, double t) {
+  if (cold_[i].id > cold_[j].id) std::swap(i, j);
+  Record &a = records_[i], &b = records_[j];
+  ColdRecord &cold_a = cold_[i], &cold_b = cold_[j];
+  advance(a, cold_a.image_x, cold_a.image_y, t, box_);
+  advance(b, cold_b.image_x, cold_b.image_y, t, box_);
+
+  const CollisionLaw& law = state_.collision;
+  const bool elastic = elastic_by_tc(law, t, cold_a.last_contact, cold_b.last_contact);
+  const Impact impact = collide(a, b, mass(a), mass(b), elastic ? 1.0 : law.restitution, box_);
+  cold_a.last_contact = cold_b.last_contact = t;
+
+  Tally& tally = state_.tally;
+  ++tally.contacts[a.species + b.species];
+  tally.elastic_contacts += elastic;
+  tally.virial.add(impact.virial);
+  tally.dissipated.add(impact.dissipated);
+  if (log) [[unlikely]]
+    log_event(EventKind::contact, t, i, j);
+  predict_changed(i, j);
+}
+
+void IsaEngine::on_kick(std::uint32_t i, double t) {
+  Record& disk = records_[i];
+  ColdRecord& cold = cold_[i];
+  const Kick kick = Kick::draw(state_.seed, cold.id, ++cold.kick_count);
+  cold.next_kick = t + kick.wait / clock_rate(state_.drive);
+
+  Tally& tally = state_.tally;
+  const bool pair = state_.drive.kind == DriveKind::pair;
+  std::uint32_t j = no_disk;
+  if (pair) {
+    j = state_.drive.partner == PartnerRule::nearest ? nearest_partner(i, t) : partner_within_reach(i, t, kick);
+    if (j == no_disk) {
+      ++tally.kicks_without_partner;
+      if (log) log_event(EventKind::kick, t, i, j);
+      predict<false>(i);
+      return;
+    }
+  }
+  ++tally.kicks;
+  const double px = state_.drive.amplitude * kick.px, py = state_.drive.amplitude * kick.py;
+  advance(disk, cold.image_x, cold.image_y, t, box_);
+  double gained = give_momentum(disk, px, py, mass(disk));
+  ++tally.kicked[disk.species];
+  if (pair) {
+    Record& partner = records_[j];
+    advance(partner, cold_[j].image_x, cold_[j].image_y, t, box_);
+    gained += give_momentum(partner, -px, -py, mass(partner));
+    ++tally.kicked[partner.species];
+  }
+  tally.injected.add(gained);
+  if (log) [[unlikely]]
+    log_event(EventKind::kick, t, i, j);
+  predict_changed(i, j);
+}
+
+void IsaEngine::on_transit(std::uint32_t i, double t) {
+  advance(records_[i], cold_[i].image_x, cold_[i].image_y, t, box_);
+  ++state_.tally.transits;
+  if (log) log_event(EventKind::transit, t, i, no_disk);
+  predict_changed(i, no_disk);
+}
+
+/// Makes the list of disk i anew around where it is at time t. Its record does not change.
+void IsaEngine::on_list_expiry(std::uint32_t i, double t) {
+  ++bookkeeping.list_rebuilds;
+  candidates_.clear();  // the old neighbours
+  const std::uint32_t* const list = neighbours_.list(i);
+  for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n) candidates_.push_back(list[n]);
+  for (const std::uint32_t k : candidates_) neighbours_.remove(k, i, &records_[0]);
+  records_[i].neighbour_count = 0;
+  neighbours_.displace(i, &cold_[0]);
+
+  Record now = records_[i];
+  std::int32_t image_x = 0, image_y = 0;
+  advance(now, image_x, image_y, t, box_);
+  cold_[i].centre_x = now.x;
+  cold_[i].centre_y = now.y;
+  const double range = now.radius + largest_radius() + neighbours_.skin();
+  neighbours_.visit_near(now.x, now.y, range, &cold_[0], [&](std::uint32_t k) {
+    if (!neighbours_.listed(&records_[0], &cold_[0], i, k)) return;
+    neighbours_.add(i, k, &records_[0]);
+    neighbours_.add(k, i, &records_[0]);
+  });
+  neighbours_.place(i, &cold_[0]);
+
+  predict<false>(i);
+  // A disk that is no longer listed could not tell disk k when it changes: k must not go on naming it.
+  for (const std::uint32_t k : candidates_)
+    if (records_[k].partner == i && !neighbours_.listed(&records_[0], &cold_[0], i, k)) predict<false>(k);
+}
+
+/// Predicts anew for disks i and j (which may be no_disk), whose records have just changed, and for all others whose
+/// prediction named one of them.
+void IsaEngine::predict_changed(std::uint32_t i, std::uint32_t j) {
+  orphans_.clear();
+  records_[i].partner = no_disk;
+  if (j != no_disk) records_[j].partner = no_disk;
+  predict<true>(i);
+  if (j != no_disk) {
+    // i may have just found j; it is no orphan, for j's record is already new.
+    const std::uint32_t partner = std::exchange(records_[i].partner, no_disk);
+    predict<true>(j);
+    records_[i].partner = partner;
+  }
+  for (const std::uint32_t k : orphans_) predict<false>(k);
+  bookkeeping.orphans += orphans_.size();
+}
+
+/// Finds what comes next for disk i and enters it into the calendar. With collect_orphans, notes the listed disks
+/// whose prediction names i.
+template <bool collect_orphans>
+void IsaEngine::predict(std::uint32_t i) {
+  ++bookkeeping.predictions;
+  Record& disk = records_[i];
+  const ColdRecord& cold = cold_[i];
+  double next_time = never;
+  std::uint32_t partner = no_disk;
+  const std::uint32_t* const list = neighbours_.list(i);
+  for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) {
+    const std::uint32_t k = list[n];
+    const Record& other = records_[k];
+    if (collect_orphans && other.partner == i) orphans_.push_back(k);
+    const double t = contact_time(disk, other, disk.radius + other.radius, box_);
+    if (t < next_time) {
+      next_time = t;
+      partner = k;
+    } else if (t == next_time && partner != no_disk && cold_[k].id < cold_[partner].id) {
+      partner = k;
+    }
+  }
+  Next next = Next::contact;
+  auto consider = [&](double t, Next what) {
+    if (t < next_time) next_time = t, next = what;
+  };
+  consider(cold.next_kick, Next::kick);
+  // Transit and expiry cost a division and a root; most often it is plain that they do not come first.
+  const double speed = std::fmax(std::fabs(disk.vx), std::fabs(disk.vy));
+  if (speed * (next_time - disk.time) > 0.999 * box_.transit) consider(transit_time(disk, box_), Next::transit);
+  if (!within_leash(disk, cold, next_time)) consider(list_expiry(disk, cold), Next::list_expiry);
+
+  disk.next_time = next_time;
+  disk.next = next;
+  disk.partner = next == Next::contact ? partner : no_disk;
+  if (next_time < never) calendar_.push(next_time, i);
+}
+
+/// Whether the disk, flying freely, is still within the leash of its list centre at time t.
+bool IsaEngine::within_leash(const Record& disk, const ColdRecord& cold, double t) const {
+  const double flight = t - disk.time;
+  const double dx = box_.nearest(disk.x - cold.centre_x) + disk.vx * flight;
+  const double dy = box_.nearest(disk.y - cold.centre_y) + disk.vy * flight;
+  return dx * dx + dy * dy < 0.999 * neighbours_.leash() * neighbours_.leash();
+}
+
+/// When the disk, flying freely, leaves the circle of its leash: the later root, since its record may be older than its
+/// list and lie outside on the other side.
+double IsaEngine::list_expiry(const Record& disk, const ColdRecord& cold) const {
+  const double dx = box_.nearest(disk.x - cold.centre_x), dy = box_.nearest(disk.y - cold.centre_y);
+  const double vv = disk.vx * disk.vx + disk.vy * disk.vy;
+  if (vv == 0) return never;
+  const double dv = dx * disk.vx + dy * disk.vy;
+  const double c = neighbours_.leash() * neighbours_.leash() - dx * dx - dy * dy;
+  return disk.time + (std::sqrt(std::fmax(dv * dv + vv * c, 0.0)) - dv) / vv;
+}
+
+/// The disk with the smallest gap of surfaces to disk i at time t; the smaller id at equal gaps.
+std::uint32_t IsaEngine::nearest_partner(std::uint32_t i, double t) {
+  const Record& disk = records_[i];
+  double best_gap = never;
+  std::uint32_t best = no_disk;
+  auto visit = [&](std::uint32_t k) {
+    if (k == i) return;
+    const double gap = surface_gap(disk, records_[k], disk.radius + records_[k].radius, t, box_);
+    if (gap < best_gap || (gap == best_gap && best != no_disk && cold_[k].id < cold_[best].id)) {
+      best_gap = gap;
+      best = k;
+    }
+  };
+  const std::uint32_t* const list = neighbours_.list(i);
+  for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) visit(list[n]);
+
+  // Unlisted disks have list centres at least R_i + R_j + skin from ours; each of the two has moved from its own.
+  const double x = std::fma(disk.vx, t - disk.time, disk.x), y = std::fma(disk.vy, t - disk.time, disk.y);
+  const double dx = box_.nearest(x - cold_[i].centre_x), dy = box_.nearest(y - cold_[i].centre_y);
+  const double moved = std::sqrt(dx * dx + dy * dy);
+  if (best_gap < neighbours_.skin() - neighbours_.leash() - moved - 1e-9) return best;
+
+  ++bookkeeping.wide_partner_searches;
+  const double margin = disk.radius + largest_radius() + neighbours_.leash() + 1e-9;
+  for (double radius = margin + neighbours_.skin();; radius *= 1.5) {
+    if (best != no_disk && best_gap + margin < radius) radius = best_gap + margin;
+    const bool all = neighbours_.visit_near(x, y, radius, &cold_[0], visit);
+    if (all || best_gap + margin <= radius) return best;
+  }
+}
+
+/// One of the disks whose centres are within reach * (R_i + R_j) of disk i at time t, picked by the kick's own random
+/// number in the order of ids; no_disk if there are none.
+std::uint32_t IsaEngine::partner_within_reach(std::uint32_t i, double t, const Kick& kick) {
+  const Record& disk = records_[i];
+  candidates_.clear();
+  auto visit = [&](std::uint32_t k) {
+    if (k == i) return;
+    if (!within_reach(disk, records_[k], disk.radius + records_[k].radius, state_.drive.reach, t, box_)) return;
+    candidates_.push_back(k);  // insertion sort by id: there are few
+    for (std::size_t n = candidates_.size() - 1; n > 0 && cold_[candidates_[n]].id < cold_[candidates_[n - 1]].id; --n)
+      std::swap(candidates_[n], candidates_[n - 1]);
+  };
+  const double x = std::fma(disk.vx, t - disk.time, disk.x), y = std::fma(disk.vy, t - disk.time, disk.y);
+  const double radius = state_.drive.reach * (disk.radius + largest_radius()) + neighbours_.leash() + 1e-9;
+  neighbours_.visit_near(x, y, radius, &cold_[0], visit);
+  return candidates_.empty() ? no_disk : candidates_[kick.pick(candidates_.size())];
+}
+
+/// Canonical order of two disks' next events at one time: kind, then ids. (List expiry, no event, comes last.)
+bool IsaEngine::before(std::uint32_t a, std::uint32_t b) const {
+  const Record &disk_a = records_[a], &disk_b = records_[b];
+  if (disk_a.next != disk_b.next) return disk_a.next < disk_b.next;
+  auto ids = [&](std::uint32_t slot, const Record& disk) {
+    const std::uint64_t own = cold_[slot].id;
+    const std::uint64_t other = disk.partner == no_disk ? no_disk : cold_[disk.partner].id;
+    return own < other ? own << 32 | other : other << 32 | own;
+  };
+  return ids(a, disk_a) < ids(b, disk_b);
+}
+
+void IsaEngine::log_event(EventKind kind, double t, std::uint32_t i, std::uint32_t j) const {
+  append_event(*log, {t, kind, cold_[i].id, j == no_disk ? no_disk : cold_[j].id});
+}
+
+Overlap IsaEngine::load(const std::uint32_t* order) {
+  size_ = state_.disks.size();
+  const Disk* const disks = state_.disks.data();
+  if (records_.size() != size_) {
+    records_ = Array<Record>(size_);
+    cold_ = Array<ColdRecord>(size_);
+  }
+  const double skin = default_skin();
+  const double widest = 2 * largest_radius() + skin;
+  neighbours_ = Neighbours(size_, box_, skin, tuning_.cell_size > 0 ? tuning_.cell_size : widest);
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    const Disk& disk = disks[order[i]];
+    records_[i] = {disk.x, disk.y, disk.vx, disk.vy, disk.time, never, state_.mixture.radius[disk.species],
+                   no_disk, Next::contact, disk.species, 0};
+    Record now = records_[i];
+    std::int32_t image_x = 0, image_y = 0;
+    advance(now, image_x, image_y, state_.now, box_);
+    cold_[i] = {now.x, now.y, disk.last_contact, disk.next_kick, disk.kick_count, disk.image_x, disk.image_y,
+                order[i], 0, no_disk};
+  }
+  Overlap deepest;
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    neighbours_.visit_near(cold_[i].centre_x, cold_[i].centre_y, widest, &cold_[0], [&](std::uint32_t k) {
+      if (!neighbours_.listed(&records_[0], &cold_[0], i, k)) return;
+      neighbours_.add(i, k, &records_[0]);
+      neighbours_.add(k, i, &records_[0]);
+      const double contact = records_[i].radius + records_[k].radius;
+      const double gap = surface_gap(records_[i], records_[k], contact, state_.now, box_);
+      if (gap < -1e-9 * contact && -gap > deepest.depth) deepest = {cold_[k].id, cold_[i].id, -gap};
+    });
+    neighbours_.place(i, &cold_[0]);
+  }
+
+  // First predictions into a calendar of arbitrary scale, only to learn how far ahead events are.
+  calendar_ = Calendar(state_.now, state_.epoch_length, 0);
+  for (std::uint32_t i = 0; i < size_; ++i) predict<false>(i);
+  const double events = tuning_.bucket_events > 0 ? tuning_.bucket_events : 3;
+  calendar_ = Calendar(state_.now, events * mean_lead() / static_cast<double>(size_), size_);
+  for (std::uint32_t i = 0; i < size_; ++i)
+    if (records_[i].next_time < never) calendar_.push(records_[i].next_time, i);
+  return deepest;
+}
+
+/// Width of the lists beyond contact: a circle of that range holds about eight centres at the given density.
+double IsaEngine::default_skin() const {
+  const double room = box_.length / 2 - 2 * largest_radius();  // wider, and nearest images would no longer be unique
+  if (tuning_.skin > 0) return std::fmin(tuning_.skin, room);
+  const double area_per_disk = box_.length * box_.length / static_cast<double>(size_);
+  const double contact = state_.mixture.radius[small] + state_.mixture.radius[big];
+  const double skin = std::sqrt(8 * area_per_disk / 3.14159) - contact;
+  return std::fmin(std::fmax(skin, 0.2 * contact), room);
+}
+
+/// About the mean time from now to a disk's next event, from the median over a sample of disks: the median of an
+/// exponential distribution is ln 2 of its mean.
+double IsaEngine::mean_lead() const {
+  const std::size_t step = size_ / 1024 + 1;
+  double low = 0, high = state_.epoch_length;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = (low + high) / 2;
+    std::size_t below = 0, all = 0;
+    for (std::size_t slot = 0; slot < size_; slot += step, ++all) below += records_[slot].next_time - state_.now < middle;
+    (2 * below < all ? low : high) = middle;
+  }
+  return std::fmax(high, 1e-9 * state_.epoch_length) / 0.69;
+}
+
+void IsaEngine::store(Disk* disks) const {
+  for (std::size_t i = 0; i < size_; ++i) {
+    const Record& record = records_[i];
+    const ColdRecord& cold = cold_[i];
+    Disk& disk = disks[cold.id];
+    disk.x = record.x;
+    disk.y = record.y;
+    disk.vx = record.vx;
+    disk.vy = record.vy;
+    disk.time = record.time;
+    disk.last_contact = cold.last_contact;
+    disk.next_kick = cold.next_kick;
+    disk.kick_count = cold.kick_count;
+    disk.image_x = cold.image_x;
+    disk.image_y = cold.image_y;
+    disk.species = record.species;
+  }
+}
+
+void IsaEngine::make_frame(double* x, double* y, double* vx, double* vy) const {
+  for (std::size_t i = 0; i < size_; ++i) {
+    const Record& record = records_[i];
+    const ColdRecord& cold = cold_[i];
+    const double flight = state_.now - record.time;
+    x[cold.id] = record.x + record.vx * flight + cold.image_x * box_.length;
+    y[cold.id] = record.y + record.vy * flight + cold.image_y * box_.length;
+    vx[cold.id] = record.vx;
+    vy[cold.id] = record.vy;
+  }
+}
+
+}  // namespace
+}  // namespace SANDGLASS_ISA
+
+#define SANDGLASS_JOIN_(a, b) a##b
+#define SANDGLASS_JOIN(a, b) SANDGLASS_JOIN_(a, b)
+Engine* SANDGLASS_JOIN(make_engine_, SANDGLASS_ISA)(State& state, const Tuning& tuning) {
+  return new IsaEngine(state, tuning);
+}
+
+}  // namespace sandglass

@@ -1,0 +1,104 @@
+#include "sandglass/dynamics/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "sandglass/core/errors.h"
+#include "sandglass/dynamics/engine.h"
+#include "sandglass/dynamics/epoch.h"
+#include "sandglass/dynamics/spatial_order.h"
+#include "sandglass/dynamics/start_check.h"
+
+namespace sandglass {
+namespace {
+
+// The widest instruction set this machine has, unless SANDGLASS_ISA asks for a narrower one (for tests).
+Engine* make_engine(State& state, const Tuning& tuning) {
+#ifdef SANDGLASS_X86_64
+  const char* wish = std::getenv("SANDGLASS_ISA");
+  const std::string_view widest = wish ? wish : "avx512";
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512vl");
+  if (avx512 && widest == "avx512") return make_engine_avx512(state, tuning);
+  if (avx2 && widest != "baseline") return make_engine_avx2(state, tuning);
+#endif
+  return make_engine_baseline(state, tuning);
+}
+
+}  // namespace
+
+void append_event(std::vector<Event>& log, const Event& event) { log.push_back(event); }
+
+struct Simulation::Run {
+  State state;  // its disks are with the engine, except for a moment at epochs
+  std::unique_ptr<Engine> engine;
+  std::size_t size = 0;
+
+  void load() {
+    size = state.size();
+    const Overlap overlap = engine->load(spatial_order(state).data());
+    if (overlap.first != no_disk)
+      throw InputError("disks " + std::to_string(overlap.first) + " and " + std::to_string(overlap.second) +
+                       " overlap by " + std::to_string(overlap.depth) +
+                       " R_s (hard disks may not overlap): prepare the start at a lower packing fraction, or let "
+                       "the program prepare it");
+    state.disks = {};  // give the memory back
+  }
+
+  void store(State& target) const {
+    target.disks.resize(size);
+    engine->store(target.disks.data());
+  }
+};
+
+Simulation::Simulation(State state, const Tuning& tuning) : run_(std::make_unique<Run>()) {
+  check_start(state);
+  run_->state = std::move(state);
+  run_->engine.reset(make_engine(run_->state, tuning));
+  run_->load();
+}
+
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+void Simulation::run_until(double end) {
+  State& state = run_->state;
+  for (;;) {
+    const double local = end - static_cast<double>(state.epoch) * state.epoch_length;
+    if (local < state.epoch_length) {
+      if (local > state.now) run_->engine->run(local);
+      return;
+    }
+    run_->engine->run(state.epoch_length);
+    run_->store(state);
+    pass_epoch(state);
+    run_->load();
+  }
+}
+
+double Simulation::time() const { return run_->state.time(); }
+const Tally& Simulation::tally() const { return run_->state.tally; }
+std::size_t Simulation::size() const { return run_->size; }
+
+State Simulation::state() const {
+  State copy = run_->state;
+  run_->store(copy);
+  return copy;
+}
+
+void Simulation::make_frame(Frame& frame) const {
+  frame.resize(size());
+  frame.time = time();
+  frame.collisions_per_disk = 2.0 * static_cast<double>(tally().collisions()) / static_cast<double>(size());
+  run_->engine->make_frame(frame.x.data(), frame.y.data(), frame.vx.data(), frame.vy.data());
+}
+
+void Simulation::set_event_log(std::vector<Event>* log) { run_->engine->log = log; }
+Simulation::Bookkeeping Simulation::bookkeeping() const { return run_->engine->bookkeeping; }
+
+}  // namespace sandglass
