@@ -28,7 +28,7 @@ class IsaEngine final : public Engine {
   IsaEngine(State& state, const Tuning& tuning)
       : state_(state), tuning_(tuning), box_(state.box_length, state.mixture) {}
 
-  Overlap load(const std::uint32_t* order) override;
+  OverlappingPair load(const std::uint32_t* order) override;
   void store(Disk* disks) const override;
   void run(double end) override;
   void make_frame(double* x, double* y, double* vx, double* vy) const override;
@@ -317,7 +317,7 @@ void IsaEngine::log_event(EventKind kind, double t, std::uint32_t i, std::uint32
   append_event(*log, {t, kind, cold_[i].id, j == no_disk ? no_disk : cold_[j].id});
 }
 
-Overlap IsaEngine::load(const std::uint32_t* order) {
+OverlappingPair IsaEngine::load(const std::uint32_t* order) {
   size_ = state_.disks.size();
   const Disk* const disks = state_.disks.data();
   if (records_.size() != size_) {
@@ -337,7 +337,7 @@ Overlap IsaEngine::load(const std::uint32_t* order) {
     cold_[i] = {now.x, now.y, disk.last_contact, disk.next_kick, disk.kick_count, disk.image_x, disk.image_y,
                 order[i], 0, no_disk};
   }
-  Overlap deepest;
+  OverlappingPair deepest;
   for (std::uint32_t i = 0; i < size_; ++i) {
     neighbours_.visit_near(cold_[i].centre_x, cold_[i].centre_y, widest, &cold_[0], [&](std::uint32_t k) {
       if (!neighbours_.listed(&records_[0], &cold_[0], i, k)) return;

@@ -11,7 +11,7 @@
 namespace sandglass {
 
 /// Two disks that overlap by more than rounding when a state is loaded.
-struct Overlap {
+struct OverlappingPair {
   std::uint32_t first = no_disk, second = no_disk;
   double depth = 0;
 };
@@ -24,7 +24,7 @@ class Engine {
 
   /// Takes the records from state.disks, makes lists, predictions and calendar at state.now.
   /// `order[slot]` is the id that goes into a slot. Returns the deepest overlap beyond rounding, if any.
-  virtual Overlap load(const std::uint32_t* order) = 0;
+  virtual OverlappingPair load(const std::uint32_t* order) = 0;
 
   /// Writes the records by id.
   virtual void store(Disk* disks) const = 0;

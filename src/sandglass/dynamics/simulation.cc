@@ -15,18 +15,23 @@
 namespace sandglass {
 namespace {
 
-// The widest instruction set this machine has, unless SANDGLASS_ISA asks for a narrower one (for tests).
-Engine* make_engine(State& state, const Tuning& tuning) {
+struct InstructionSet {
+  const char* name;
+  Engine* (*make_engine)(State&, const Tuning&);
+};
+
+// The widest that this machine has, unless SANDGLASS_ISA asks for a narrower one (for tests).
+InstructionSet choose_instruction_set() {
 #ifdef SANDGLASS_X86_64
   const char* wish = std::getenv("SANDGLASS_ISA");
   const std::string_view widest = wish ? wish : "avx512";
-  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && widest != "baseline";
   const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                      __builtin_cpu_supports("avx512vl");
-  if (avx512 && widest == "avx512") return make_engine_avx512(state, tuning);
-  if (avx2 && widest != "baseline") return make_engine_avx2(state, tuning);
+                      __builtin_cpu_supports("avx512vl") && widest != "avx2";
+  if (avx512) return {"avx512", make_engine_avx512};
+  if (avx2) return {"avx2", make_engine_avx2};
 #endif
-  return make_engine_baseline(state, tuning);
+  return {"baseline", make_engine_baseline};
 }
 
 }  // namespace
@@ -40,7 +45,7 @@ struct Simulation::Run {
 
   void load() {
     size = state.size();
-    const Overlap overlap = engine->load(spatial_order(state).data());
+    const OverlappingPair overlap = engine->load(spatial_order(state).data());
     if (overlap.first != no_disk)
       throw InputError("disks " + std::to_string(overlap.first) + " and " + std::to_string(overlap.second) +
                        " overlap by " + std::to_string(overlap.depth) +
@@ -58,7 +63,7 @@ struct Simulation::Run {
 Simulation::Simulation(State state, const Tuning& tuning) : run_(std::make_unique<Run>()) {
   check_start(state);
   run_->state = std::move(state);
-  run_->engine.reset(make_engine(run_->state, tuning));
+  run_->engine.reset(choose_instruction_set().make_engine(run_->state, tuning));
   run_->load();
 }
 
@@ -97,6 +102,8 @@ void Simulation::make_frame(Frame& frame) const {
   frame.collisions_per_disk = 2.0 * static_cast<double>(tally().collisions()) / static_cast<double>(size());
   run_->engine->make_frame(frame.x.data(), frame.y.data(), frame.vx.data(), frame.vy.data());
 }
+
+const char* Simulation::instruction_set() { return choose_instruction_set().name; }
 
 void Simulation::set_event_log(std::vector<Event>* log) { run_->engine->log = log; }
 Simulation::Bookkeeping Simulation::bookkeeping() const { return run_->engine->bookkeeping; }

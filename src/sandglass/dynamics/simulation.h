@@ -41,6 +41,9 @@ class Simulation {
   /// From now on appends every physical event to `log` (for tests; nullptr stops it).
   void set_event_log(std::vector<Event>* log);
 
+  /// The instruction set that the engine uses on this machine: baseline, avx2 or avx512. All give the same bits.
+  static const char* instruction_set();
+
   /// Work that is bookkeeping, not physics: how the engine's time was spent.
   struct Bookkeeping {
     std::uint64_t predictions = 0, orphans = 0, list_rebuilds = 0, wide_partner_searches = 0;

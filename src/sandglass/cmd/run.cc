@@ -1,0 +1,116 @@
+// sandglass run: one state point, from the configuration to the report.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "sandglass/cmd/commands.h"
+#include "sandglass/cmd/interrupt.h"
+#include "sandglass/cmd/progress_bar.h"
+#include "sandglass/core/errors.h"
+#include "sandglass/io/config.h"
+#include "sandglass/io/run_folder.h"
+#include "sandglass/report/report.h"
+#include "sandglass/study/run_point.h"
+
+namespace sandglass {
+namespace {
+
+struct Arguments {
+  std::string config, folder;
+  std::vector<std::string> assignments;
+  bool resume = false, force = false;
+};
+
+// "0.8123(45)" style is for papers; here value and error stand side by side.
+std::string with_error(double value, double error) {
+  if (std::isnan(value)) return "not reached";
+  return std::isnan(error) ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} +- {:.2g}", value, error);
+}
+
+double error_of(const Summary& summary, std::string_view name) {
+  for (const auto& [key, error] : summary.errors)
+    if (key == name) return error;
+  return Summary::unknown;
+}
+
+void print_summary(const Summary& s, const RunFolder& folder) {
+  const auto line = [](std::string_view what, const std::string& value) { fmt::print("  {:<34}{}\n", what, value); };
+  fmt::print("\n{} disks, packing fraction {:.4g}, restitution {:.4g}, seed {}\n", s.particles, s.packing_fraction,
+             s.restitution, s.seed);
+  line("measured", fmt::format("{:.4g} time units, {:.4g} collisions per disk", s.time, s.collisions_per_particle));
+  line("temperature T", with_error(s.temperature.all, error_of(s, "temperature_all")));
+  line("small / big disks T_s / T_b", fmt::format("{:.4g} / {:.4g} = {:.4f}", s.temperature.small, s.temperature.big,
+                                                  s.temperature.small / s.temperature.big));
+  line("collisions per disk and time", with_error(s.collision_rate, error_of(s, "collision_rate")));
+  line("compressibility factor pV/NT", with_error(s.compressibility_factor, error_of(s, "compressibility_factor")));
+  if (!std::isnan(s.msd_exponent.small.value))
+    line(fmt::format("MSD exponent, {:g} < t < {:g}, small", s.msd_exponent.small.from, s.msd_exponent.small.to),
+         with_error(s.msd_exponent.small.value, s.msd_exponent.small.error));
+  line("small disks move by R_s in t =", with_error(s.msd_unit_time.small, error_of(s, "msd_unit_time_small")));
+  line("stationary", s.stationary ? "yes" : "not shown (see below)");
+  line("speed", fmt::format("{:.3g} million collisions/s, {} in all", s.collisions_per_second / 1e6,
+                            duration_text(s.wall_seconds)));
+  line("state", s.state_hash);
+  for (const std::string& warning : s.warnings) fmt::print("Note: {}\n", warning);
+  fmt::print("Report: {}\n", folder.report().string());
+}
+
+Arguments parse(int argc, char** argv, int& exit_code) {
+  Arguments arguments;
+  std::uint64_t threads = 0;
+  CLI::App app{"Simulates and measures one state point.", "sandglass run"};
+  app.add_option("config", arguments.config, "configuration (TOML); all keys: sandglass info --keys")->required();
+  app.add_option("-o,--output", arguments.folder, "folder for the results (default: runs/NAME of the configuration)");
+  app.add_option("--set", arguments.assignments, "set a key, as in --set run.seed=7; after the file, repeatable")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--threads", threads, "short for --set run.threads=N");
+  app.add_flag("--resume", arguments.resume, "go on from the checkpoint in the folder; start if there is none");
+  app.add_flag("--force", arguments.force, "replace the run that the folder holds")->excludes("--resume");
+  exit_code = -1;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    exit_code = app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
+  }
+  if (threads > 0) arguments.assignments.push_back(fmt::format("run.threads={}", threads));
+  if (arguments.folder.empty())
+    arguments.folder = (std::filesystem::path("runs") / std::filesystem::path(arguments.config).stem()).string();
+  return arguments;
+}
+
+}  // namespace
+
+int run_command(int argc, char** argv) {
+  int exit_code = 0;
+  const Arguments arguments = parse(argc, argv, exit_code);
+  if (exit_code >= 0) return exit_code;
+
+  const Config config = read_config(arguments.config, arguments.assignments);
+  RunFolder folder = RunFolder::open(arguments.folder, arguments.resume  ? FolderMode::resume
+                                                       : arguments.force ? FolderMode::force
+                                                                         : FolderMode::fresh);
+  catch_stop_signals();
+  RunResult result;
+  {
+    ProgressBar bar;
+    result = run_point(config, folder, arguments.resume,
+                       {.progress = [&](std::string_view stage, double fraction) { bar.show(stage, fraction); },
+                        .stop_requested = stop_signal_came});
+  }
+  if (result.outcome == RunOutcome::stopped) {
+    fmt::print("Stopped at a checkpoint. Go on with: sandglass run {} -o {} --resume\n", arguments.config,
+               arguments.folder);
+    return static_cast<int>(ExitCode::resumable);
+  }
+  if (result.outcome == RunOutcome::already_finished)
+    fmt::print("This run is finished already; nothing was done.\n");
+  if (result.outcome == RunOutcome::finished || !std::filesystem::exists(folder.report())) write_report(folder.path());
+  print_summary(result.summary, folder);
+  return static_cast<int>(ExitCode::done);
+}
+
+}  // namespace sandglass

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sandglass/core/errors.h"
+#include "sandglass/io/config.h"
+
+namespace sandglass {
+namespace {
+
+constexpr double insert_limit = 0.45;  // random insertion hardly ends above (random sequential addition jams at 0.547)
+constexpr double quench_least = 0.01;
+
+std::uint64_t big_count(const Config::System& system, std::uint64_t particles) {
+  return static_cast<std::uint64_t>(std::llround(system.big_fraction * static_cast<double>(particles)));
+}
+
+/// Whether big_fraction * particles is a whole number, up to the rounding of a decimal fraction.
+bool divides(const Config::System& system, std::uint64_t particles) {
+  const double big = system.big_fraction * static_cast<double>(particles);
+  return std::fabs(big - std::round(big)) <= 1e-12 * static_cast<double>(particles);
+}
+
+Mixture mixture_of(const Config::System& system) {
+  const double ratio = system.size_ratio;
+  return {.radius = {1, ratio}, .mass = {1, ratio * ratio}};
+}
+
+bool fits(const Config::System& system, std::uint64_t particles) {
+  const Mixture mixture = mixture_of(system);
+  const std::uint64_t big = big_count(system, particles);
+  return box_length_for(mixture, particles - big, big, system.packing_fraction) >= minimum_box_length(mixture);
+}
+
+/// The smallest number of disks that both divides into the species and fills a box of the least size.
+std::uint64_t least_particles(const Config::System& system) {
+  std::uint64_t particles = system.particles;
+  while (!(fits(system, particles) && divides(system, particles))) ++particles;
+  return particles;
+}
+
+void check_system(const Config::System& system) {
+  if (!divides(system, system.particles)) {
+    const bool halves = system.big_fraction == 0.5;
+    throw InputError(
+        fmt::format("system.particles = {} {}: system.big_fraction = {} of them must be a whole number of disks; "
+                    "change one of the two",
+                    system.particles, halves ? "is odd" : "cannot be divided", system.big_fraction));
+  }
+  if (!fits(system, system.particles)) {
+    throw InputError(fmt::format(
+        "the box is too small: with system.particles = {} at system.packing_fraction = {} its side is less than 8 big "
+        "radii, and nearest images would not be unique; set system.particles to at least {}",
+        system.particles, system.packing_fraction, least_particles(system)));
+  }
+}
+
+void check_prepare(const Config& config) {
+  const double eta = config.system.packing_fraction;
+  const auto& prepare = config.prepare;
+  if (prepare.method == PrepareMethod::insert && eta > insert_limit) {
+    throw InputError(
+        fmt::format("system.packing_fraction = {} cannot be reached by random insertion, which ends at {}: set "
+                    "prepare.method = \"quench\"",
+                    eta, insert_limit));
+  }
+  if (prepare.method == PrepareMethod::quench && eta < quench_least) {
+    throw InputError(fmt::format(
+        "system.packing_fraction = {} is too dilute to come from a quench (least {}): set prepare.method = \"insert\"",
+        eta, quench_least));
+  }
+  if (prepare.method == PrepareMethod::quench && eta >= prepare.jammed_fraction) {
+    throw InputError(
+        fmt::format("prepare.jammed_fraction = {} must be above system.packing_fraction = {}: the quenched packing is "
+                    "expanded to it",
+                    prepare.jammed_fraction, eta));
+  }
+  if (prepare.method != PrepareMethod::file) {
+    if (prepare.file.empty()) return;
+    throw InputError(
+        "prepare.file is given, but prepare.method makes a start of its own: set prepare.method = \"file\" or remove "
+        "prepare.file");
+  }
+  if (prepare.file.empty()) {
+    throw InputError("prepare.method = \"file\" needs prepare.file, the state, checkpoint or trajectory to start from");
+  }
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(prepare.file, error)) {
+    throw InputError(
+        fmt::format("prepare.file = \"{}\" is not there or not a file: check the path (in a file it is "
+                    "relative to the folder of that file)",
+                    prepare.file));
+  }
+}
+
+}  // namespace
+
+void check_config(const Config& config) {
+  check_system(config.system);
+  check_prepare(config);
+  if (config.collision.restitution == 1 && config.drive.kind != DriveKind::none) {
+    throw InputError(
+        "collision.restitution = 1 with driving has no steady state: nothing takes out the energy that kicks put in; "
+        "set "
+        "drive.kind = \"none\" or collision.restitution below 1");
+  }
+  if (static_cast<double>(config.run.intervals) > config.run.collisions) {
+    throw InputError(
+        fmt::format("run.intervals = {} is too many for run.collisions = {}: an interval must be at least one "
+                    "collision per disk long; "
+                    "set run.intervals to at most {}",
+                    config.run.intervals, config.run.collisions, std::max(1.0, std::floor(config.run.collisions))));
+  }
+  if (config.output.trajectory_frames == 1) {
+    throw InputError(
+        "output.trajectory_frames = 1: both ends of the measured stretch are stored, so set it to 0 (no file) or at "
+        "least 2");
+  }
+}
+
+}  // namespace sandglass

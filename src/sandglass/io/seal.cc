@@ -1,0 +1,81 @@
+#include "sandglass/io/seal.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "sandglass/core/errors.h"
+
+namespace sandglass {
+namespace {
+
+constexpr std::string_view name = "sandglass seal";
+
+/// Two multiplications a word, each step a bijection of the sum so far: no single change goes unseen.
+std::uint64_t mix(std::uint64_t sum, std::uint64_t word) {
+  return std::rotl((sum ^ (word * 0x9e3779b97f4a7c15u)) * 0xd6e8feb86659fd93u, 31);
+}
+
+/// The seal that belongs to what follows the first block.
+std::string compute_seal(std::ifstream& file) {
+  std::vector<char> block(1 << 20);
+  std::uint64_t sum = 0, length = 0;
+  file.seekg(seal_size);
+  while (file) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    const auto got = static_cast<std::size_t>(file.gcount());
+    length += got;
+    std::memset(block.data() + got, 0, block.size() - got);  // a last word that is not full ends in zeros
+    for (std::size_t at = 0; at < got; at += sizeof(std::uint64_t)) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, block.data() + at, sizeof word);
+      sum = mix(sum, word);
+    }
+  }
+  std::string seal = fmt::format("{} 1: {} bytes, checksum {:016x}\n", name, length, mix(sum, length));
+  seal.resize(seal_size, '\0');
+  return seal;
+}
+
+}  // namespace
+
+void seal_file(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string seal = compute_seal(in);
+  if (in.bad()) throw RunError(fmt::format("cannot read {} back: is the disk failing?", path.string()));
+  std::fstream out(path, std::ios::binary | std::ios::in | std::ios::out);
+  out.write(seal.data(), static_cast<std::streamsize>(seal.size()));
+  out.flush();
+  if (!out) throw RunError(fmt::format("cannot write {}: is the disk full?", path.string()));
+}
+
+bool has_seal(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string start(name.size(), '\0');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return start == name;
+}
+
+void check_seal(const std::filesystem::path& path) {
+  std::error_code error;
+  std::ifstream file(path, std::ios::binary);
+  if (!file || !std::filesystem::is_regular_file(path, error)) {
+    throw InputError(fmt::format("{} is not there or cannot be read: check the path", path.string()));
+  }
+  std::string found(seal_size, '\0');
+  file.read(found.data(), static_cast<std::streamsize>(found.size()));
+  if (!found.starts_with(name)) {
+    throw InputError(fmt::format("{} is not a state file or a checkpoint of this program", path.string()));
+  }
+  file.clear();
+  if (found != compute_seal(file)) {
+    throw InputError(fmt::format("{} is damaged: its checksum is wrong; use another copy", path.string()));
+  }
+}
+
+}  // namespace sandglass

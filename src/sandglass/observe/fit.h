@@ -1,0 +1,28 @@
+// Numbers read off a mean square displacement: exponents, passage times, diffusion.
+#pragma once
+
+#include "sandglass/observe/interval_series.h"
+
+namespace sandglass {
+
+/// Exponent of y = A t^alpha over t1 <= t <= t2: least squares of ln y against ln t with equal weights (log-spaced lags
+/// then weigh every part of the range alike). The error is a jackknife over the intervals, so correlations between lags
+/// are in it. NaN with fewer than two lags in the range.
+Estimate power_law_exponent(const IntervalSeries& series, double t1, double t2);
+
+/// The earliest time at which the series reaches `level` from below, interpolated linearly in ln t, ln y; jackknife
+/// error. NaN when it never does (also when one of the jackknife curves does not: then the error is NaN).
+Estimate passage_time(const IntervalSeries& series, double level);
+
+/// Smallest exponent over all windows [t, width * t] inside the series, and the middle (geometric) of that window. The
+/// error is that of the exponent in this window.
+struct MinimalExponent {
+  Estimate exponent;
+  double time = 0;
+};
+MinimalExponent minimal_exponent(const IntervalSeries& series, double width = 3.16);
+
+/// D = (1/4) d MSD / dt at t: difference quotient between the outermost lags inside [t / spread, t * spread].
+Estimate diffusion_coefficient(const IntervalSeries& series, double t, double spread = 1.5);
+
+}  // namespace sandglass

@@ -1,0 +1,69 @@
+// Temperatures and collisions against time, from the start of the run and by interval.
+#pragma once
+
+#include <vector>
+
+#include "sandglass/observe/interval_series.h"
+#include "sandglass/observe/observer.h"
+#include "sandglass/observe/population.h"
+#include "sandglass/observe/schedule.h"
+
+namespace sandglass {
+
+/// An Observer that records T_all, T_small, T_big and s at t = 0 and then at log-spaced times, without an end:
+/// t_j = first * 10^(j / per_decade). 16 decades at most, so its memory is fixed.
+class Timeseries {
+ public:
+  explicit Timeseries(const Population& population, double first_time, std::uint64_t per_decade = 20);
+
+  [[nodiscard]] double next_sample() const;
+  void sample(const Frame& frame);
+  /// Averages with an independent run that was sampled at the same times.
+  void merge(const Timeseries& other);
+  [[nodiscard]] std::vector<Field> fields();
+  /// /timeseries/{time, collisions, temperature_all, temperature_small, temperature_big}
+  [[nodiscard]] std::vector<Dataset> results() const;
+
+ private:
+  Population population_;
+  Snapshot now_;
+  std::vector<double> times_;
+  std::uint64_t next_ = 0, runs_ = 1;
+  std::vector<double> collisions_, all_, small_, big_;  ///< sums over merged runs
+};
+static_assert(Observer<Timeseries>);
+
+/// An Observer of the measured stretch: temperatures averaged over each interval (plan.temperature_samples evenly
+/// spaced frames, the first at its start) and the collision rate of each interval, from s at its ends.
+class IntervalAverages {
+ public:
+  IntervalAverages(const MeasurementPlan& plan, const Population& population);
+
+  [[nodiscard]] double next_sample() const;
+  void sample(const Frame& frame);
+  /// Appends the intervals of an independent run with the same plan.
+  void merge(const IntervalAverages& other);
+  [[nodiscard]] std::vector<Field> fields();
+  /// /timeseries/intervals/{time (middle), temperature_all, temperature_small, temperature_big, collision_rate}
+  [[nodiscard]] std::vector<Dataset> results() const;
+
+  /// Mean over the finished intervals, with the standard error over them.
+  [[nodiscard]] Estimate temperature(Group group) const { return mean_of_intervals(interval_temperatures(group)); }
+  [[nodiscard]] Estimate collision_rate() const { return mean_of_intervals(interval_collision_rates()); }
+  /// One value per finished interval.
+  [[nodiscard]] std::vector<double> interval_temperatures(Group group) const;
+  [[nodiscard]] std::vector<double> interval_collision_rates() const;
+
+ private:
+  [[nodiscard]] std::vector<std::size_t> finished() const;
+
+  MeasurementPlan plan_;
+  Population population_;
+  Snapshot now_;
+  std::uint64_t interval_ = 0, taken_ = 0;  ///< the next sample; interval_ == intervals: only the end is missing
+  std::vector<ExactSum> sums_;              ///< of temperatures: [interval, group]
+  std::vector<double> boundaries_;          ///< s at both ends: [interval, 2]
+};
+static_assert(Observer<IntervalAverages>);
+
+}  // namespace sandglass

@@ -1,0 +1,123 @@
+#include "sandglass/study/run_point.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "sandglass/core/errors.h"
+
+using namespace sandglass;
+
+namespace {
+
+/// A folder of its own under the system's temporary one, removed at the end.
+class Scratch {
+ public:
+  Scratch() {
+    std::string name = (std::filesystem::temp_directory_path() / "sandglass-run-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~Scratch() { std::filesystem::remove_all(path_); }
+  std::filesystem::path operator/(const char* name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+Config tiny() {
+  Config config;
+  config.system.particles = 100;
+  config.system.packing_fraction = 0.4;
+  config.prepare.method = PrepareMethod::insert;
+  config.collision.restitution = 0.5;
+  config.run.equilibrate = 20;
+  config.run.collisions = 100;
+  config.run.intervals = 5;
+  config.output.trajectory_frames = 3;
+  return config;
+}
+
+Summary run(const Config& config, const std::filesystem::path& path) {
+  RunFolder folder = RunFolder::open(path, FolderMode::fresh);
+  return run_point(config, folder, false).summary;
+}
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+TEST_CASE("a run leaves all its files and a summary that adds up") {
+  const Scratch scratch;
+  const Summary s = run(tiny(), scratch / "a");
+  for (const char* name : {"config.toml", "summary.json", "observables.h5", "trajectory.h5", "checkpoint.h5", "run.log"})
+    CHECK(std::filesystem::exists(scratch / "a" / name));
+  CHECK(s.collisions_per_particle > 90);
+  CHECK(s.collision_rate * s.time == doctest::Approx(s.collisions_per_particle).epsilon(1e-9));
+  // Injected, dissipated and kinetic energies come from different sums; their quantum is 6e-14, some 1e4 terms.
+  CHECK(std::fabs(s.energy.balance) < 1e-10);
+  CHECK(std::fabs(s.momentum[0]) < 1e-10);
+  CHECK(s.state_hash.size() == 16);
+}
+
+TEST_CASE("the sampling plan does not change the trajectory, the seed does") {
+  const Scratch scratch;
+  const std::string hash = run(tiny(), scratch / "a").state_hash;
+  Config other = tiny();
+  other.run.intervals = 9;
+  other.observe.wavenumbers = {2.0};
+  other.output.trajectory_frames = 0;
+  CHECK(run(other, scratch / "b").state_hash == hash);
+  other.run.seed = 2;
+  CHECK(run(other, scratch / "c").state_hash != hash);
+}
+
+TEST_CASE("a run stopped anywhere and resumed ends in the same bits of state, observables and trajectory") {
+  for (const DriveKind kind : {DriveKind::pair, DriveKind::single, DriveKind::none}) {
+    const Scratch scratch;
+    Config config = tiny();
+    config.drive.kind = kind;
+    const Summary whole = run(config, scratch / "whole");
+    int stops = 0;
+    for (int beats = 1;; beats = beats * 3 / 2 + 1) {
+      RunFolder folder = RunFolder::open(scratch / "cut", FolderMode::resume);
+      int left = beats;
+      const RunResult result = run_point(config, folder, true, {.progress = {}, .stop_requested = [&] { return left-- <= 0; }});
+      if (result.outcome == RunOutcome::stopped) {
+        ++stops;
+        continue;
+      }
+      CHECK(result.outcome == RunOutcome::finished);
+      CHECK(result.summary.state_hash == whole.state_hash);
+      break;
+    }
+    CHECK(stops > 3);
+    CHECK(bytes_of(scratch / "cut" / "observables.h5") == bytes_of(scratch / "whole" / "observables.h5"));
+    CHECK(bytes_of(scratch / "cut" / "trajectory.h5") == bytes_of(scratch / "whole" / "trajectory.h5"));
+
+    RunFolder folder = RunFolder::open(scratch / "cut", FolderMode::resume);
+    CHECK(run_point(config, folder, true).outcome == RunOutcome::already_finished);
+    config.run.seed = 99;
+    CHECK_THROWS_AS(run_point(config, folder, true), InputError);
+  }
+}
+
+TEST_CASE("an aged state of another run can be the start, at another density and restitution") {
+  const Scratch scratch;
+  run(tiny(), scratch / "a");
+  Config next = tiny();
+  next.prepare.method = PrepareMethod::file;
+  next.prepare.file = (scratch / "a" / "checkpoint.h5").string();
+  next.system.packing_fraction = 0.3;
+  next.collision.restitution = 0.6;
+  const Summary s = run(next, scratch / "b");
+  CHECK(s.packing_fraction == doctest::Approx(0.3).epsilon(1e-12));
+  next.system.particles = 102;
+  CHECK_THROWS_AS(run(next, scratch / "c"), InputError);
+  CHECK(!std::filesystem::exists(scratch / "c"));
+}

@@ -1,0 +1,30 @@
+#include "sandglass/study/start.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace sandglass;
+
+TEST_CASE("a start has the wanted disks, density, temperature, law and clocks") {
+  Config config;
+  config.system.particles = 200;
+  config.system.packing_fraction = 0.3;
+  config.prepare.method = PrepareMethod::insert;
+  config.collision.restitution = 0.7;
+  config.drive.temperature = 2;
+  const State state = make_start(config);
+  CHECK(state.size() == 200);
+  CHECK(counts_of(config).big == 100);
+  CHECK(packing_fraction(state) == doctest::Approx(0.3).epsilon(1e-12));
+  CHECK(temperatures(state).all == doctest::Approx(2).epsilon(1e-12));
+  CHECK(state.collision.restitution == 0.7);
+  CHECK(state.epoch_length == 1024 * beat_of(config));
+  CHECK(state.drive.frequency == 1 / beat_of(config));
+  // Kicks at rate f per disk give it f <p^2> / (2 m) energy per time on average; collisions at rate omega take
+  // (1 - eps^2) T / 2 per disk each (physics of the monodisperse estimate that the first guess uses, averaged over m).
+  const double gain = state.drive.frequency * state.drive.amplitude * state.drive.amplitude * (1 + 1 / (1.43 * 1.43)) / 2;
+  const double loss = (1 - 0.49) * 2 / 2 / beat_of(config);
+  CHECK(gain == doctest::Approx(loss).epsilon(1e-12));
+  for (const Disk& disk : state.disks) CHECK(std::isfinite(disk.next_kick));
+}

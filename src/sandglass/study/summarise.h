@@ -1,0 +1,24 @@
+// A finished run in numbers and sentences.
+#pragma once
+
+#include "sandglass/core/state.h"
+#include "sandglass/io/config.h"
+#include "sandglass/io/summary.h"
+#include "sandglass/study/calibrate.h"
+#include "sandglass/study/measurement.h"
+
+namespace sandglass {
+
+/// What only the run itself knows.
+struct RunFacts {
+  Calibration calibration;
+  double start_energy = 0, end_energy = 0;  ///< kinetic energy of all disks at both ends of the measured stretch
+  double equilibration_rate = 0;            ///< collisions per disk and time by which the measured stretch was planned
+  double wall_seconds = 0;
+  double collisions_per_second = 0;
+};
+
+/// The summary, with what the program decided by itself and what the reader must be warned of.
+Summary summarise(const Config& config, const State& end, const Measurement& measurement, const RunFacts& facts);
+
+}  // namespace sandglass

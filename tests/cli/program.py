@@ -1,0 +1,75 @@
+"""Running the program from tests: one call, one result."""
+
+import contextlib
+import hashlib
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+SANDGLASS = os.environ["SANDGLASS"]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# A whole run in about a second: everything that a large one does, at 200 disks. (Calibrating takes most of it, and the
+# less the more the collisions dissipate.)
+TINY = """
+[system]
+particles = 200
+packing_fraction = 0.3
+[collision]
+restitution = 0.5
+[prepare]
+method = "insert"
+[run]
+equilibrate = 20
+collisions = 40
+intervals = 2
+[output]
+trajectory_frames = 3
+"""
+
+DONE, FAILURE, BAD_INPUT = 0, 1, 2
+
+
+def sandglass(*arguments, cwd=None, timeout=120):
+    """Runs the program to its end; the result has returncode, stdout, stderr."""
+    return subprocess.run([SANDGLASS, *map(str, arguments)], cwd=cwd, timeout=timeout, text=True,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def fingerprint(folder):
+    """Every file of a folder with its bytes and its time of change: what "nothing touched" means."""
+    return {str(path.relative_to(folder)): (path.stat().st_mtime_ns, hashlib.sha256(path.read_bytes()).hexdigest())
+            for path in sorted(pathlib.Path(folder).rglob("*")) if path.is_file()}
+
+
+class Case(unittest.TestCase):
+    """A test in a folder of its own, `self.folder`, with the tiny configuration in it as `tiny.toml`."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="sandglass-cli-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.tiny = self.folder / "tiny.toml"
+        self.tiny.write_text(TINY)
+
+    def run_ok(self, *arguments, **options):
+        result = sandglass(*arguments, **options)
+        self.assertEqual(result.returncode, DONE, result.stdout + result.stderr)
+        return result
+
+    def refused(self, *arguments, saying=(), **options):
+        """The command ends with exit code 2 and a message on standard error that has every one of the words `saying`."""
+        result = sandglass(*arguments, **options)
+        message = result.stderr
+        self.assertEqual(result.returncode, BAD_INPUT, result.stdout + message)
+        for word in saying:
+            self.assertIn(word.lower(), message.lower())
+        return message
+
+    @contextlib.contextmanager
+    def untouched(self, folder):
+        before = fingerprint(folder)
+        yield
+        self.assertEqual(fingerprint(folder), before)
