@@ -1,6 +1,8 @@
 """Running the program from tests: one call, one result."""
 
+import atexit
 import contextlib
+import functools
 import hashlib
 import os
 import pathlib
@@ -45,6 +47,17 @@ def fingerprint(folder):
             for path in sorted(pathlib.Path(folder).rglob("*")) if path.is_file()}
 
 
+@functools.cache
+def tiny_run():
+    """A finished run of TINY, made once."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="sandglass-cli-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    (folder / "tiny.toml").write_text(TINY)
+    result = sandglass("run", folder / "tiny.toml", "-o", folder / "out")
+    assert result.returncode == DONE, result.stderr
+    return folder / "out"
+
+
 class Case(unittest.TestCase):
     """A test in a folder of its own, `self.folder`, with the tiny configuration in it as `tiny.toml`."""
 
@@ -53,6 +66,9 @@ class Case(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
         self.tiny = self.folder / "tiny.toml"
         self.tiny.write_text(TINY)
+
+    def copy_of_tiny_run(self, out):
+        shutil.copytree(tiny_run(), out)
 
     def run_ok(self, *arguments, **options):
         result = sandglass(*arguments, **options)

@@ -21,7 +21,9 @@ void check_temperature(double eta, double restitution, double collisions) {
   const double beat = mean_free_time(state.mixture, 0.5, eta, 1);
   state.collision.collapse = CollapsePolicy::tc;
   state.collision.collapse_time = 1e-5 * beat;
-  const Calibration found = calibrate(state, {.beat = beat});
+  CalibrationGoal goal;  // T = 1 and f_Dr = omega
+  goal.beat = beat;
+  const Calibration found = calibrate(state, goal);
   CHECK(found.converged);
   state.drive.frequency = found.frequency;
   state.drive.amplitude = found.amplitude;
@@ -42,7 +44,6 @@ void check_temperature(double eta, double restitution, double collisions) {
   // Kicks come at the rate of collisions: the rate goes as sqrt(T), known to half as much, and its own noise is
   // smaller.
   CHECK(std::fabs(seen.rate * free_time - 1) < 0.01);
-  MESSAGE(temperature << " rate " << seen.rate * free_time << " windows " << found.windows);
 }
 
 }  // namespace

@@ -46,21 +46,21 @@ void check_state_point(double size_ratio, double eta, std::uint64_t seed) {
 
   const double formula = compressibility_factor(mixture, 0.5, eta) - 1;
   CHECK(excess.error() < 0.004 * formula);  // else the checks below would be idle
-  CHECK(excess.agrees(formula, formula_error(eta) * formula));
-  CHECK(rate.agrees(expected.mean, formula_error(eta) * expected.mean));
+  CHECK(excess.sigmas_from(formula, formula_error(eta) * formula) < allowed_sigmas);
+  CHECK(rate.sigmas_from(expected.mean, formula_error(eta) * expected.mean) < allowed_sigmas);
   for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j) CHECK(pair[i][j].agrees(1, formula_error(eta)));
+    for (int j = 0; j < 2; ++j) CHECK(pair[i][j].sigmas_from(1, formula_error(eta)) < allowed_sigmas);
   // One size: the Pade approximant is exact here to 2e-4; in N disks Z is lower by (eta Z)'' eta / (2 N (eta Z)'),
   // less than (Z - 1) / N.
   if (size_ratio == 1) {
     const double pade = virial_pade(eta) - 1;
-    CHECK(excess.agrees(pade, (2e-4 + 1 / count) * pade));
+    CHECK(excess.sigmas_from(pade, (2e-4 + 1 / count) * pade) < allowed_sigmas);
   }
   // Exact at any density: impulses are sqrt(pi mu T / 2) (1 + eps) on average. Virial and rates share their
   // fluctuations; one impulse scatters by 52 %, so that their ratio is known to 5e-4. It goes as the square root of
   // the temperature of relative motion.
   CHECK(relation.error() < 0.001);
-  CHECK(relation.agrees(std::sqrt(count / (count - 1))));
+  CHECK(relation.sigmas_from(std::sqrt(count / (count - 1))) < allowed_sigmas);
 }
 
 /// Ordered pairs of species found in thin rings around contact; gives the density of j at contact with i.
@@ -156,6 +156,6 @@ TEST_CASE("disks collide as often as g(r) at contact says") {
       CAPTURE(i);
       CAPTURE(j);
       CHECK(ratio[i][j].error() < 0.006);
-      CHECK(ratio[i][j].agrees(1, 0.003));
+      CHECK(ratio[i][j].sigmas_from(1, 0.003) < allowed_sigmas);
     }
 }

@@ -35,16 +35,20 @@ double deepest_overlap_in(const State& state, const Frame& frame) {
   return deepest;
 }
 
-/// The time of a contact soon to come, found by a copy sent ahead.
+/// The time of a contact soon to come, found by a copy sent ahead. (The log counts from the start of the epoch.)
 double next_contact(const Simulation& simulation, double ahead) {
   Simulation scout(simulation.state());
-  std::vector<Event> log;
-  scout.set_event_log(&log);
-  const double epoch_start = scout.time() - scout.state().now;
-  scout.run_until(scout.time() + ahead);
-  const auto contact =
-      std::find_if(log.rbegin(), log.rend(), [](const Event& e) { return e.kind == EventKind::contact; });
-  return contact == log.rend() ? scout.time() : epoch_start + contact->time;
+  const auto epoch_start = [&] { return scout.time() - scout.state().now; };
+  for (;;) {
+    std::vector<Event> log;
+    scout.set_event_log(&log);
+    const double origin = epoch_start();
+    scout.run_until(scout.time() + ahead);
+    scout.set_event_log(nullptr);
+    const auto contact =
+        std::find_if(log.rbegin(), log.rend(), [](const Event& e) { return e.kind == EventKind::contact; });
+    if (contact != log.rend() && epoch_start() == origin) return origin + contact->time;
+  }
 }
 
 /// eta = 0.81, eps = 0.5, driven and protected from collapse as a run is, for `collisions` collisions.
@@ -59,7 +63,7 @@ void check_hardness(std::uint64_t collisions) {
   Frame frame;
   double deepest = -1, shallowest = 1;
   for (std::uint64_t done = 0; done < collisions; done = simulation.tally().collisions()) {
-    simulation.run_until(simulation.time() + 10 * free_time);
+    simulation.run_until(simulation.time() + 30 * free_time);
     simulation.run_until(next_contact(simulation, 0.01 * free_time));  // so that two disks touch just now
     simulation.make_frame(frame);
     const double overlap = deepest_overlap_in(initial, frame);
@@ -69,16 +73,15 @@ void check_hardness(std::uint64_t collisions) {
   // A contact time is rounded to 2^-53 of at most 1000 mean free times, about 20 time units: 4e-15 at the speeds here
   // (up to 5), and centres in a box of 80 to 1e-14, a few times each. Ten such errors in a row are 2e-13.
   CHECK(deepest < 2e-13);
-  CHECK(shallowest > -2e-13);
+  // The time of the look counts from the start of the run, up to 4000 units in the long test: rounded to 5e-13, in
+  // which disks that approach at less than 10 come as near as 5e-12.
+  CHECK(shallowest > -5e-12);
   // No stall: the collision rate stays of the order of the formula's, at this density up to a few times larger.
   const double total = static_cast<double>(simulation.tally().collisions());
   const double rate = 2 * total / 1000 / simulation.time();
   CHECK(rate * free_time > 0.5);
   CHECK(rate * free_time < 10);
   CHECK(static_cast<double>(simulation.tally().elastic_contacts) < 1e-3 * total);
-  MESSAGE(deepest << " " << shallowest << " rate ratio " << rate * free_time << " elastic "
-                  << static_cast<double>(simulation.tally().elastic_contacts) / total << " T "
-                  << temperatures(simulation.state()).all);
 }
 
 }  // namespace

@@ -62,8 +62,9 @@ class Average {
   }
   [[nodiscard]] double mean() const { return mean_; }
   [[nodiscard]] double error() const { return std::sqrt(squares_ / (count_ * (count_ - 1))); }
-  [[nodiscard]] bool agrees(double expected, double systematic = 0) const {
-    return std::fabs(mean_ - expected) < allowed_sigmas * error() + systematic;
+  /// How many standard errors the mean is farther from `expected` than the `systematic` error allowed.
+  [[nodiscard]] double sigmas_from(double expected, double systematic = 0) const {
+    return (std::fabs(mean_ - expected) - systematic) / error();
   }
 
  private:

@@ -1,10 +1,11 @@
 // The hot loop. Invariants, at every moment between two events:
 //  1. A record is as its disk's own last contact, kick, transit or epoch left it. Nothing else writes to its flight.
-//  2. next/next_time/partner of a disk is the earliest, in canonical order, of its contacts with listed disks, its own
-//     kick, its transit and the expiry of its list, as computed from the records as they are now - or of an earlier
-//     contact that a listed partner knows of and will be found first.
-//  3. Every disk whose next_time is finite has an entry in the calendar that states it.
-//  4. Two disks that overlap or touch are in each other's lists; lists are symmetric.
+//  2. A foreseen contact is mutual: both disks name each other, with the same time.
+//  3. No disk's next event comes later, in canonical order, than its own kick, its transit or the expiry of its list; and
+//     no contact of a listed pair, as computed from the records as they are now, comes before the next events of both its
+//     disks. So the earliest next event of all is the earliest event there is.
+//  4. Every finite next event has an entry in the calendar, a contact at least one for the pair.
+//  5. Two disks that overlap or touch are in each other's lists; lists are symmetric.
 #include "sandglass/dynamics/engine.h"
 
 #include <cmath>
@@ -39,9 +40,11 @@ class IsaEngine final : public Engine {
   void on_transit(std::uint32_t i, double t);
   void on_list_expiry(std::uint32_t i, double t);
 
-  template <bool collect_orphans>
+  void predict_pending();
   void predict(std::uint32_t i);
-  void predict_changed(std::uint32_t i, std::uint32_t j);
+  void orphan(std::uint32_t i);
+  void release(std::uint32_t i);
+  [[nodiscard]] bool comes_before_next_of(const Record& other, double t, std::uint32_t i) const;
   [[nodiscard]] double list_expiry(const Record& disk, const ColdRecord& cold) const;
   [[nodiscard]] bool within_leash(const Record& disk, const ColdRecord& cold, double t) const;
 
@@ -64,7 +67,7 @@ class IsaEngine final : public Engine {
   Array<ColdRecord> cold_;
   Neighbours neighbours_;
   Calendar calendar_;
-  GrowingArray<std::uint32_t> orphans_;     // disks whose predicted partner has just changed
+  GrowingArray<std::uint32_t> pending_;     // disks without a next event, to be predicted before time goes on
   GrowingArray<std::uint32_t> candidates_;  // possible partners of a kick
 };
 
@@ -104,7 +107,8 @@ void IsaEngine::on_contact(std::uint32_t i, std::uint32_t j, double t) {
   tally.dissipated.add(impact.dissipated);
   if (log) [[unlikely]]
     log_event(EventKind::contact, t, i, j);
-  predict_changed(i, j);
+  release(i);
+  predict_pending();
 }
 
 void IsaEngine::on_kick(std::uint32_t i, double t) {
@@ -121,7 +125,8 @@ void IsaEngine::on_kick(std::uint32_t i, double t) {
     if (j == no_disk) {
       ++tally.kicks_without_partner;
       if (log) log_event(EventKind::kick, t, i, j);
-      predict<false>(i);
+      release(i);
+      predict_pending();
       return;
     }
   }
@@ -139,23 +144,24 @@ void IsaEngine::on_kick(std::uint32_t i, double t) {
   tally.injected.add(gained);
   if (log) [[unlikely]]
     log_event(EventKind::kick, t, i, j);
-  predict_changed(i, j);
+  release(i);
+  if (pair) release(j);
+  predict_pending();
 }
 
 void IsaEngine::on_transit(std::uint32_t i, double t) {
   advance(records_[i], cold_[i].image_x, cold_[i].image_y, t, box_);
   ++state_.tally.transits;
   if (log) log_event(EventKind::transit, t, i, no_disk);
-  predict_changed(i, no_disk);
+  release(i);
+  predict_pending();
 }
 
 /// Makes the list of disk i anew around where it is at time t. Its record does not change.
 void IsaEngine::on_list_expiry(std::uint32_t i, double t) {
   ++bookkeeping.list_rebuilds;
-  candidates_.clear();  // the old neighbours
   const std::uint32_t* const list = neighbours_.list(i);
-  for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n) candidates_.push_back(list[n]);
-  for (const std::uint32_t k : candidates_) neighbours_.remove(k, i, &records_[0]);
+  for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n) neighbours_.remove(list[n], i, &records_[0]);
   records_[i].neighbour_count = 0;
   neighbours_.displace(i, &cold_[0]);
 
@@ -172,32 +178,42 @@ void IsaEngine::on_list_expiry(std::uint32_t i, double t) {
   });
   neighbours_.place(i, &cold_[0]);
 
-  predict<false>(i);
-  // A disk that is no longer listed could not tell disk k when it changes: k must not go on naming it.
-  for (const std::uint32_t k : candidates_)
-    if (records_[k].partner == i && !neighbours_.listed(&records_[0], &cold_[0], i, k)) predict<false>(k);
+  // Nobody names i, whose next event was this; so nobody who has left its list does.
+  release(i);
+  predict_pending();
 }
 
-/// Predicts anew for disks i and j (which may be no_disk), whose records have just changed, and for all others whose
-/// prediction named one of them.
-void IsaEngine::predict_changed(std::uint32_t i, std::uint32_t j) {
-  orphans_.clear();
+/// Leaves disk i without a next event, to be predicted anew.
+void IsaEngine::orphan(std::uint32_t i) {
   records_[i].partner = no_disk;
-  if (j != no_disk) records_[j].partner = no_disk;
-  predict<true>(i);
-  if (j != no_disk) {
-    // i may have just found j; it is no orphan, for j's record is already new.
-    const std::uint32_t partner = std::exchange(records_[i].partner, no_disk);
-    predict<true>(j);
-    records_[i].partner = partner;
-  }
-  for (const std::uint32_t k : orphans_) predict<false>(k);
-  bookkeeping.orphans += orphans_.size();
+  records_[i].next_time = never;
+  pending_.push_back(i);
 }
 
-/// Finds what comes next for disk i and enters it into the calendar. With collect_orphans, notes the listed disks
-/// whose prediction names i.
-template <bool collect_orphans>
+/// The same for disk i and for its partner, if its next event is a contact.
+void IsaEngine::release(std::uint32_t i) {
+  const std::uint32_t partner = records_[i].partner;
+  orphan(i);
+  if (partner != no_disk) orphan(partner);
+}
+
+void IsaEngine::predict_pending() {
+  while (!pending_.empty()) {
+    const std::uint32_t i = pending_.back();
+    pending_.pop_back();
+    predict(i);
+  }
+}
+
+/// Whether a contact at time t of disk i with `other` comes before what `other` has next, in canonical order: contacts
+/// come before anything else at the same time, and among contacts of one disk that with the smaller id comes first.
+bool IsaEngine::comes_before_next_of(const Record& other, double t, std::uint32_t i) const {
+  if (t != other.next_time) return t < other.next_time;
+  return other.partner == no_disk || other.partner == i || cold_[i].id < cold_[other.partner].id;
+}
+
+/// Finds what comes next for disk i and enters it into the calendar. A contact is taken only if it also comes before
+/// what the other disk has next; the other's old partner, if any, is then to be predicted anew.
 void IsaEngine::predict(std::uint32_t i) {
   ++bookkeeping.predictions;
   Record& disk = records_[i];
@@ -208,18 +224,15 @@ void IsaEngine::predict(std::uint32_t i) {
   for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) {
     const std::uint32_t k = list[n];
     const Record& other = records_[k];
-    if (collect_orphans && other.partner == i) orphans_.push_back(k);
     const double t = contact_time(disk, other, disk.radius + other.radius, box_);
-    if (t < next_time) {
-      next_time = t;
-      partner = k;
-    } else if (t == next_time && partner != no_disk && cold_[k].id < cold_[partner].id) {
-      partner = k;
-    }
+    if (t > next_time || t == never || !comes_before_next_of(other, t, i)) continue;
+    if (t == next_time && cold_[partner].id < cold_[k].id) continue;
+    next_time = t;
+    partner = k;
   }
   Next next = Next::contact;
   auto consider = [&](double t, Next what) {
-    if (t < next_time) next_time = t, next = what;
+    if (t < next_time) next_time = t, next = what, partner = no_disk;
   };
   consider(cold.next_kick, Next::kick);
   // Transit and expiry cost a division and a root; most often it is plain that they do not come first.
@@ -227,9 +240,21 @@ void IsaEngine::predict(std::uint32_t i) {
   if (speed * (next_time - disk.time) > 0.999 * box_.transit) consider(transit_time(disk, box_), Next::transit);
   if (!within_leash(disk, cold, next_time)) consider(list_expiry(disk, cold), Next::list_expiry);
 
+  if (partner != no_disk && partner == disk.partner) return;  // it has chosen i already
+  if (disk.partner != no_disk) orphan(disk.partner);
   disk.next_time = next_time;
   disk.next = next;
-  disk.partner = next == Next::contact ? partner : no_disk;
+  disk.partner = partner;
+  if (partner != no_disk) {
+    Record& other = records_[partner];
+    if (other.partner != no_disk) {
+      ++bookkeeping.orphans;
+      orphan(other.partner);
+    }
+    other.next_time = next_time;
+    other.next = Next::contact;
+    other.partner = i;
+  }
   if (next_time < never) calendar_.push(next_time, i);
 }
 
@@ -352,7 +377,10 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
 
   // First predictions into a calendar of arbitrary scale, only to learn how far ahead events are.
   calendar_ = Calendar(state_.now, state_.epoch_length, 0);
-  for (std::uint32_t i = 0; i < size_; ++i) predict<false>(i);
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    predict(i);
+    predict_pending();
+  }
   const double events = tuning_.bucket_events > 0 ? tuning_.bucket_events : 3;
   calendar_ = Calendar(state_.now, events * mean_lead() / static_cast<double>(size_), size_);
   for (std::uint32_t i = 0; i < size_; ++i)

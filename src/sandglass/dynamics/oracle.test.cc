@@ -28,8 +28,8 @@ RandomSystem any_system() {
   system.drive.reach = *rc::gen::element(1.05, 1.5, 1.9);
   system.drive.frequency = *rc::gen::element(0.3, 2.0, 20.0);
   system.drive.amplitude = 0.5;
-  // Undriven, strongly inelastic small systems collapse (finite-time singularity): the TC model is for that.
-  if (system.drive.kind == DriveKind::none && system.restitution < 0.9) system.collapse = CollapsePolicy::tc;
+  // Strongly inelastic disks collapse: infinitely many collisions in a finite time. The TC model is for that.
+  if (system.restitution < 0.9) system.collapse = CollapsePolicy::tc;
   return system;
 }
 

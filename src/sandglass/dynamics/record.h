@@ -16,8 +16,7 @@ inline namespace SANDGLASS_ISA {
 /// What comes next for a disk. The first three are the physical EventKinds of the same names, in the same order.
 enum class Next : std::uint8_t { contact, kick, transit, list_expiry };
 
-/// The hot half: the flight, and the earliest event that this disk foresees. A contact is foreseen by at least the one
-/// of the pair for which it is the earliest; that suffices, since whatever comes before it re-predicts that disk.
+/// The hot half: the flight, and what comes next. A contact stands in the records of both its disks.
 struct alignas(64) Record {
   double x, y, vx, vy, time;
   double next_time;

@@ -56,9 +56,9 @@ void compress(SoftDisks& disks, const Progress& progress) {
 }
 
 /// Whether the overlaps fall to `rest_overlap` before the packing counts as jammed.
-bool bring_to_rest(SoftDisks& disks, double rest_overlap, std::int64_t patience, const Progress& progress) {
+bool bring_to_rest(SoftDisks& disks, double rest_overlap, std::int64_t most_idle_steps, const Progress& progress) {
   double least_overlap = 1;
-  for (std::int64_t step = 0, last_gain = 0; step - last_gain < patience; ++step) {
+  for (std::int64_t step = 0, last_gain = 0; step - last_gain < most_idle_steps; ++step) {
     disks.step(1);
     if (step % steps_between_looks != 0) continue;
     const double overlap = disks.deepest_overlap();

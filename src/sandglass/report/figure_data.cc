@@ -135,6 +135,8 @@ void add_fit(Figure& figure, const Curve& measured, const Summary::Exponent& exp
   line.role = Role::fit;
   figure.caption += fmt::format("The thick line is the power law t^{} fitted to the {} disks in {:g} < t < {:g}.",
                                 with_error(exponent.value, exponent.error), measured.name, exponent.from, exponent.to);
+  if (measured.x.back() < 0.9 * exponent.to)
+    figure.caption += fmt::format(" The run covers this range only up to t = {:.3g}.", measured.x.back());
   figure.curves.push_back(std::move(line));
 }
 

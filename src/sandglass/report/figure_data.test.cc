@@ -74,6 +74,11 @@ TEST_CASE("the fitted line has the exponent of the summary and runs through the 
   for (std::size_t i = 0; i < fit.x.size(); ++i)  // log and exp of numbers of order one: some 1e-15
     CHECK(fit.y[i] == doctest::Approx(0.3 * std::pow(fit.x[i], 0.47)).epsilon(1e-12));
 
+  CHECK(msd.caption.find("only up to") == std::string::npos);
+
+  summary.msd_exponent.small = {0.47, 0.011, 1, 100};  // the data end at t = 34
+  CHECK(run_figures(results, summary).front().caption.find("only up to t = 34.1") != std::string::npos);
+
   summary.msd_exponent.small = {};
   const Figure without = run_figures(results, summary).front();
   CHECK(std::none_of(without.curves.begin(), without.curves.end(), [](const Curve& c) { return c.role == Role::fit; }));

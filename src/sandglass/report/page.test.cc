@@ -58,7 +58,8 @@ TEST_CASE("bytes that are no UTF-8 do not stop the page") {
 
 TEST_CASE("no mark of the template is left, whatever the parts hold") {
   const std::string html = page_html(run_page(synthetic_run(100)));
-  for (const char* mark : {"{{library", "{{style", "{{data", "{{plot", "{{script"}) CHECK(html.find(mark) == std::string::npos);
+  for (const char* mark : {"{{library", "{{style", "{{data", "{{plot", "{{script"})
+    CHECK(html.find(mark) == std::string::npos);
   CHECK(html.find("uPlot") != std::string::npos);
   CHECK(html.find("Permission is hereby granted") != std::string::npos);
 }

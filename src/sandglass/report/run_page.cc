@@ -95,9 +95,9 @@ std::string describe_relaxation(const Summary& summary, const LastScattering& la
                                                   : "faster than diffusion (exponent 1), on the way from free flight "
                                                     "(exponent 2)";
     text += fmt::format(
-        "Between t = {:g} and {:g} the mean square displacement of the small disks grows as t to the power "
+        "Between t = {:g} and {:.3g} the mean square displacement of the small disks grows as t to the power "
         "{}, {}. ",
-        exponent.from, exponent.to, exponent_text(exponent), meaning);
+        exponent.from, std::fmin(exponent.to, last.time), exponent_text(exponent), meaning);
   }
   if (std::isfinite(last.value)) {
     const char* meaning = last.value > 0.5   ? "most of the structure is still there: the system has not relaxed"
