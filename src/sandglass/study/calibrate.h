@@ -11,7 +11,7 @@ namespace sandglass {
 /// What is wanted of the steady state.
 struct CalibrationGoal {
   double temperature = 1;
-  std::optional<double> frequency;  ///< fixed f_Dr; none: f_Dr = omega, the collision rate at that temperature
+  std::optional<double> frequency{};  ///< fixed f_Dr; none: f_Dr = omega, the collision rate at that temperature
   double beat = 1;                  ///< one mean free time by the formula
   double settle = 0;                ///< collisions per disk to age before calibrating (dense states)
 };

@@ -18,7 +18,7 @@ TEST_CASE("the calibrated drive holds the wanted temperature at the collision ra
   config.drive.temperature = 1.5;
   State state = make_start(config);
   const double beat = beat_of(config);
-  const Calibration found = calibrate(state, {.temperature = 1.5, .frequency = {}, .beat = beat, .settle = 0});
+  const Calibration found = calibrate(state, {.temperature = 1.5, .beat = beat});
   CHECK(found.converged);
   state.drive.frequency = found.frequency;
   state.drive.amplitude = found.amplitude;
