@@ -25,10 +25,12 @@ constexpr Command commands[] = {
 };
 
 void print_usage(std::FILE* out) {
-  fmt::print(out, "sandglass {}: exact event-driven simulation of driven granular fluids\n\nUsage:\n", sandglass::version);
+  fmt::print(out, "sandglass {}: exact event-driven simulation of driven granular fluids\n\nUsage:\n",
+             sandglass::version);
   for (const Command& command : commands) fmt::print(out, "  sandglass {:<9}{}\n", command.name, command.summary);
-  fmt::print(out, "\nsandglass COMMAND --help tells the options. A first run:\n"
-                  "  sandglass run examples/quick.toml -o runs/quick\n");
+  fmt::print(out,
+             "\nsandglass COMMAND --help tells the options. A first run:\n"
+             "  sandglass run examples/quick.toml -o runs/quick\n");
 }
 
 int dispatch(int argc, char** argv) {

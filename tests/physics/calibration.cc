@@ -20,7 +20,7 @@ void check_temperature(double eta, double restitution, double collisions) {
   drive(state, DriveKind::pair, restitution);
   const double beat = mean_free_time(state.mixture, 0.5, eta, 1);
   state.collision.collapse = CollapsePolicy::tc;
-  state.collision.collapse_time = 1e-5 * beat;
+  state.collision.collapse_time = 2e-6 * beat;
   CalibrationGoal goal;  // T = 1 and f_Dr = omega
   goal.beat = beat;
   const Calibration found = calibrate(state, goal);

@@ -57,7 +57,7 @@ void check_hardness(std::uint64_t collisions) {
   drive(state, DriveKind::pair, 0.5);
   const double free_time = 1 / state.drive.frequency;
   state.collision.collapse = CollapsePolicy::tc;
-  state.collision.collapse_time = 1e-5 * free_time;
+  state.collision.collapse_time = 2e-6 * free_time;
   const State initial = state;
   Simulation simulation(std::move(state));
   Frame frame;

@@ -32,8 +32,9 @@ void ProgressBar::show(std::string_view stage, double fraction) {
 
   const double elapsed = std::chrono::duration<double>(now - stage_began_).count();
   const double done = fraction - first_fraction_;
-  const std::string left =
-      done > 0.005 && elapsed > 1 && fraction < 1 ? ", " + duration_text(elapsed * (1 - fraction) / done) + " left" : "";
+  const std::string left = done > 0.005 && elapsed > 1 && fraction < 1
+                               ? ", " + duration_text(elapsed * (1 - fraction) / done) + " left"
+                               : "";
   if (!terminal_) {
     fmt::print(stderr, "{}: {:.0f} %{}\n", stage, 100 * fraction, left);
     return;

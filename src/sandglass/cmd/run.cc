@@ -106,8 +106,7 @@ int run_command(int argc, char** argv) {
                arguments.folder);
     return static_cast<int>(ExitCode::resumable);
   }
-  if (result.outcome == RunOutcome::already_finished)
-    fmt::print("This run is finished already; nothing was done.\n");
+  if (result.outcome == RunOutcome::already_finished) fmt::print("This run is finished already; nothing was done.\n");
   if (result.outcome == RunOutcome::finished || !std::filesystem::exists(folder.report())) write_report(folder.path());
   print_summary(result.summary, folder);
   return static_cast<int>(ExitCode::done);

@@ -60,10 +60,14 @@ std::array<double, 2> portable_sincos_turns(double turns) {
   for (int k = 16; k >= 2; k -= 2) cosine = (cosine + 1) * (-r2 / (k * (k - 1)));
   cosine += 1;
   switch (static_cast<std::int64_t>(quarters) & 3) {
-    case 0: return {sine, cosine};
-    case 1: return {cosine, -sine};
-    case 2: return {-sine, -cosine};
-    default: return {-cosine, sine};
+    case 0:
+      return {sine, cosine};
+    case 1:
+      return {cosine, -sine};
+    case 2:
+      return {-sine, -cosine};
+    default:
+      return {-cosine, sine};
   }
 }
 

@@ -56,8 +56,7 @@ std::string state_hash(const State& state) {
   const Tally& tally = state.tally;
   for (const std::uint64_t count : tally.contacts) hash.add(count);
   for (const std::uint64_t count : tally.kicked) hash.add(count);
-  for (const std::uint64_t count :
-       {tally.elastic_contacts, tally.kicks, tally.kicks_without_partner, tally.transits})
+  for (const std::uint64_t count : {tally.elastic_contacts, tally.kicks, tally.kicks_without_partner, tally.transits})
     hash.add(count);
   for (const ExactSum& sum : {tally.virial, tally.dissipated, tally.injected}) hash.add(sum);
 
@@ -139,9 +138,12 @@ void draw_velocities(State& state, double temperature) {
 
 double clock_rate(const Drive& drive) {
   switch (drive.kind) {
-    case DriveKind::pair: return drive.frequency / 2;
-    case DriveKind::single: return drive.frequency;
-    case DriveKind::none: break;
+    case DriveKind::pair:
+      return drive.frequency / 2;
+    case DriveKind::single:
+      return drive.frequency;
+    case DriveKind::none:
+      break;
   }
   return 0;
 }

@@ -24,12 +24,12 @@ struct Mixture {
 /// The canonical record of one disk. It changes only at the disk's own contacts, kicks and transits and at epochs, so
 /// that it is a function of the physics alone. Times are counted from the start of the current epoch.
 struct Disk {
-  double x = 0, y = 0;    ///< centre at `time`, in [0, L)
-  double vx = 0, vy = 0;  ///< velocity since `time`
-  double time = 0;        ///< when this record last changed
+  double x = 0, y = 0;                                             ///< centre at `time`, in [0, L)
+  double vx = 0, vy = 0;                                           ///< velocity since `time`
+  double time = 0;                                                 ///< when this record last changed
   double last_contact = -std::numeric_limits<double>::infinity();  ///< time of the latest collision (for the TC model)
   double next_kick = std::numeric_limits<double>::infinity();      ///< when this disk's own kick clock rings next
-  std::uint64_t kick_count = 0;         ///< rings so far; the counter of the disk's random stream
+  std::uint64_t kick_count = 0;           ///< rings so far; the counter of the disk's random stream
   std::int32_t image_x = 0, image_y = 0;  ///< unwrapped position is x + image_x * L
   Species species = small;
 };
@@ -56,11 +56,11 @@ struct Drive {
 
 /// Exact counts and sums over all events since the start of the run. Averages are differences of two tallies.
 struct Tally {
-  std::array<std::uint64_t, 3> contacts{};      ///< collisions by pair of species: ss, sb, bb
-  std::uint64_t elastic_contacts = 0;           ///< made elastic by the TC model
+  std::array<std::uint64_t, 3> contacts{};            ///< collisions by pair of species: ss, sb, bb
+  std::uint64_t elastic_contacts = 0;                 ///< made elastic by the TC model
   std::array<std::uint64_t, species_count> kicked{};  ///< disks kicked, as first or second of a pair
-  std::uint64_t kicks = 0;                      ///< kick events that acted
-  std::uint64_t kicks_without_partner = 0;      ///< rings skipped because nobody was within reach
+  std::uint64_t kicks = 0;                            ///< kick events that acted
+  std::uint64_t kicks_without_partner = 0;            ///< rings skipped because nobody was within reach
   std::uint64_t transits = 0;
   ExactSum virial;      ///< sum over collisions of impulse times distance of the centres
   ExactSum dissipated;  ///< energy lost in collisions

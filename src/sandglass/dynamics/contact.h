@@ -26,8 +26,7 @@ struct Box {
   Box(double box_length, const Mixture& mixture)
       : length(box_length),
         inverse(1 / box_length),
-        transit(box_length / 4 -
-                (mixture.radius[0] > mixture.radius[1] ? mixture.radius[0] : mixture.radius[1])) {}
+        transit(box_length / 4 - (mixture.radius[0] > mixture.radius[1] ? mixture.radius[0] : mixture.radius[1])) {}
 
   [[gnu::always_inline]] double nearest(double difference) const {
     return std::fma(-length, std::nearbyint(difference * inverse), difference);
@@ -108,9 +107,9 @@ struct Impact {
   double dissipated;  ///< energy lost
 };
 
-/// Collides a and b, both already advanced to the time of contact. With n the unit vector from a to b and g = v_a - v_b:
-/// b gains delta = mu (1 + eps) (g.n) n, a loses it; mu = m_a m_b / (m_a + m_b); the energy lost is
-/// mu (1 - eps^2) (g.n)^2 / 2. (The paper prints delta with a spurious factor 1/2.)
+/// Collides a and b, both already advanced to the time of contact. With n the unit vector from a to b and g = v_a -
+/// v_b: b gains delta = mu (1 + eps) (g.n) n, a loses it; mu = m_a m_b / (m_a + m_b); the energy lost is mu (1 - eps^2)
+/// (g.n)^2 / 2. (The paper prints delta with a spurious factor 1/2.)
 template <class A, class B>
 [[gnu::always_inline]] inline Impact collide(A& a, B& b, double mass_a, double mass_b, double restitution,
                                              const Box& box) {

@@ -38,8 +38,7 @@ TEST_CASE("at the predicted time the disks are at contact distance, approaching,
     ++contacts;
     // Rounding: positions to 4e-15 (L = 20), magnified by relative to normal speed at grazing incidence.
     CHECK(std::fabs(surface_gap(a, b, contact, t, box)) < 1e-9);
-    for (int n = 1; n < 10; ++n)
-      CHECK(surface_gap(a, b, contact, reference + (t - reference) * n / 10, box) > -1e-12);
+    for (int n = 1; n < 10; ++n) CHECK(surface_gap(a, b, contact, reference + (t - reference) * n / 10, box) > -1e-12);
   }
   CHECK(contacts > 500);
 }
@@ -49,7 +48,8 @@ TEST_CASE("a collision keeps momentum, reverses the normal velocity times eps, l
   for (std::uint64_t i = 0; i < 20000; ++i) {
     Disk a = random_disk(4, 2 * i, 20), b = random_disk(4, 2 * i + 1, 20);
     a.time = b.time = 1;
-    const double ma = 1 + uniform(random_words(1, Stream::probe, i, 0)[0]), mb = 1.7, eps = 0.1 + 0.9 * uniform(i << 40);
+    const double ma = 1 + uniform(random_words(1, Stream::probe, i, 0)[0]), mb = 1.7,
+                 eps = 0.1 + 0.9 * uniform(i << 40);
     const auto [rx, ry] = separation_at(a, b, 1, box);
     const double r = std::sqrt(rx * rx + ry * ry);
     const auto normal = [&] { return (rx * (b.vx - a.vx) + ry * (b.vy - a.vy)) / r; };

@@ -12,8 +12,8 @@ inline namespace SANDGLASS_ISA {
 /// All that is random in the kick number `count` (from 1) of disk `id`. One call of Philox: word 0 is the wait until
 /// the next ring, words 1 and 2 the momentum, word 3 the choice among partners (PartnerRule::within).
 struct Kick {
-  double wait;      ///< until the next ring, times the clock's rate
-  double px, py;    ///< xi: standard normal components
+  double wait;    ///< until the next ring, times the clock's rate
+  double px, py;  ///< xi: standard normal components
   std::uint64_t choice;
 
   static Kick draw(std::uint64_t seed, std::uint64_t id, std::uint64_t count) {

@@ -1,9 +1,10 @@
 // The hot loop. Invariants, at every moment between two events:
 //  1. A record is as its disk's own last contact, kick, transit or epoch left it. Nothing else writes to its flight.
 //  2. A foreseen contact is mutual: both disks name each other, with the same time.
-//  3. No disk's next event comes later, in canonical order, than its own kick, its transit or the expiry of its list; and
-//     no contact of a listed pair, as computed from the records as they are now, comes before the next events of both its
-//     disks. So the earliest next event of all is the earliest event there is.
+//  3. No disk's next event comes later, in canonical order, than its own kick, its transit or the expiry of its list;
+//  and
+//     no contact of a listed pair, as computed from the records as they are now, comes before the next events of both
+//     its disks. So the earliest next event of all is the earliest event there is.
 //  4. Every finite next event has an entry in the calendar, a contact at least one for the pair.
 //  5. Two disks that overlap or touch are in each other's lists; lists are symmetric.
 #include "sandglass/dynamics/engine.h"
@@ -79,10 +80,18 @@ void IsaEngine::run(double end) {
     const Record& disk = records_[i];
     const double t = disk.next_time;
     switch (disk.next) {
-      case Next::contact: on_contact(i, disk.partner, t); break;
-      case Next::kick: on_kick(i, t); break;
-      case Next::transit: on_transit(i, t); break;
-      case Next::list_expiry: on_list_expiry(i, t); break;
+      case Next::contact:
+        on_contact(i, disk.partner, t);
+        break;
+      case Next::kick:
+        on_kick(i, t);
+        break;
+      case Next::transit:
+        on_transit(i, t);
+        break;
+      case Next::list_expiry:
+        on_list_expiry(i, t);
+        break;
     }
   }
   state_.now = end;
@@ -354,13 +363,13 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
   neighbours_ = Neighbours(size_, box_, skin, tuning_.cell_size > 0 ? tuning_.cell_size : widest);
   for (std::uint32_t i = 0; i < size_; ++i) {
     const Disk& disk = disks[order[i]];
-    records_[i] = {disk.x, disk.y, disk.vx, disk.vy, disk.time, never, state_.mixture.radius[disk.species],
+    records_[i] = {disk.x,  disk.y,        disk.vx,      disk.vy, disk.time, never, state_.mixture.radius[disk.species],
                    no_disk, Next::contact, disk.species, 0};
     Record now = records_[i];
     std::int32_t image_x = 0, image_y = 0;
     advance(now, image_x, image_y, state_.now, box_);
-    cold_[i] = {now.x, now.y, disk.last_contact, disk.next_kick, disk.kick_count, disk.image_x, disk.image_y,
-                order[i], 0, no_disk};
+    cold_[i] = {now.x, now.y,  disk.last_contact, disk.next_kick, disk.kick_count, disk.image_x, disk.image_y, order[i],
+                0,     no_disk};
   }
   OverlappingPair deepest;
   for (std::uint32_t i = 0; i < size_; ++i) {
@@ -406,7 +415,8 @@ double IsaEngine::mean_lead() const {
   for (int i = 0; i < 50; ++i) {
     const double middle = (low + high) / 2;
     std::size_t below = 0, all = 0;
-    for (std::size_t slot = 0; slot < size_; slot += step, ++all) below += records_[slot].next_time - state_.now < middle;
+    for (std::size_t slot = 0; slot < size_; slot += step, ++all)
+      below += records_[slot].next_time - state_.now < middle;
     (2 * below < all ? low : high) = middle;
   }
   return std::fmax(high, 1e-9 * state_.epoch_length) / 0.69;

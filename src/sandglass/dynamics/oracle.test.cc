@@ -57,7 +57,8 @@ TEST_CASE("the engine does the oracle's events, in the oracle's order, to the or
     reference.run_until(end);
     const std::size_t common = std::min(events.size(), expected.size());
     for (std::size_t i = 0; i < common; ++i)
-      if (events[i] != expected[i]) RC_FAIL("event " + std::to_string(i) + " of " + std::to_string(common) + " differs");
+      if (events[i] != expected[i])
+        RC_FAIL("event " + std::to_string(i) + " of " + std::to_string(common) + " differs");
     RC_ASSERT(events.size() == expected.size());
     RC_ASSERT(state_hash(simulation.state()) == state_hash(reference.state()));
     RC_CLASSIFY(events.size() > 300, "long");

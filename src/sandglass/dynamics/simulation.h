@@ -13,9 +13,9 @@ namespace sandglass {
 
 /// Free choices of the engine. None of them changes a bit of the result; 0 means "let the program choose".
 struct Tuning {
-  double skin = 0;             ///< width of the neighbour lists beyond contact, in R_s
-  double cell_size = 0;        ///< least side of a cell of the look-up grid, in R_s
-  double bucket_events = 0;    ///< mean number of events in a fine bucket of the calendar
+  double skin = 0;           ///< width of the neighbour lists beyond contact, in R_s
+  double cell_size = 0;      ///< least side of a cell of the look-up grid, in R_s
+  double bucket_events = 0;  ///< mean number of events in a fine bucket of the calendar
 };
 
 /// Event-driven dynamics of a State. Neighbour lists find who may meet, a calendar of buckets finds who meets next.

@@ -24,7 +24,7 @@ struct Config {
   struct Collision {
     double restitution = 0.9;
     CollapsePolicy collapse_policy = CollapsePolicy::tc;
-    double collapse_time = 1e-5;  ///< t_c in units of the mean time between a disk's collisions, 1 / omega
+    double collapse_time = 2e-6;  ///< t_c in mean free times, by the formula
   } collision;
   struct DriveKeys {
     DriveKind kind = DriveKind::pair;

@@ -204,8 +204,9 @@ const std::vector<Key>& config_table() {
                           "collided less than `collapse_time` ago.",
            .words = {"none", "tc"}}),
       key<&C::collision, &C::Collision::collapse_time>({.name = "collision.collapse_time",
-                                                        .unit = "1/omega",
-                                                        .description = "t_c of the TC model.",
+                                                        .unit = "mean free times",
+                                                        .description = "t_c of the TC model; the mean free time is "
+                                                                       "that of the formula (Enskog).",
                                                         .range = {0, 1}}),
       key<&C::drive, &C::DriveKeys::kind>(
           {.name = "drive.kind",

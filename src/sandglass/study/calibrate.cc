@@ -18,8 +18,7 @@ struct Window {
 /// The scratch run: counts beats, measures windows of them.
 class Scratch {
  public:
-  Scratch(State state, double beat)
-      : population_(population_of(state)), beat_(beat), simulation_(std::move(state)) {}
+  Scratch(State state, double beat) : population_(population_of(state)), beat_(beat), simulation_(std::move(state)) {}
 
   void run(std::uint64_t beats) { simulation_.run_until(static_cast<double>(beats_ += beats) * beat_); }
 
@@ -77,8 +76,8 @@ Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& 
 
     const double ratio = goal.temperature / temperature;
     const double frequency = goal.frequency.value_or(rate * std::sqrt(ratio));
-    result.converged = window >= 2 && std::fabs(ratio - 1) < 2 * wanted_error &&
-                       std::fabs(frequency / result.frequency - 1) < 0.01;
+    result.converged =
+        window >= 2 && std::fabs(ratio - 1) < 2 * wanted_error && std::fabs(frequency / result.frequency - 1) < 0.01;
     result.amplitude *= std::sqrt(result.frequency / frequency * ratio * std::sqrt(ratio));
     result.frequency = frequency;
     if (!result.converged) scratch.drive(result.frequency, result.amplitude);

@@ -12,8 +12,8 @@ namespace sandglass {
 struct CalibrationGoal {
   double temperature = 1;
   std::optional<double> frequency{};  ///< fixed f_Dr; none: f_Dr = omega, the collision rate at that temperature
-  double beat = 1;                  ///< one mean free time by the formula
-  double settle = 0;                ///< collisions per disk to age before calibrating (dense states)
+  double beat = 1;                    ///< one mean free time by the formula
+  double settle = 0;                  ///< collisions per disk to age before calibrating (dense states)
 };
 
 /// The values to freeze, and how well they are known.
@@ -30,7 +30,8 @@ struct Calibration {
 /// kicks put in, collisions at rate omega ~ sqrt(T) take out), so after a window with mean temperature T and rate omega
 ///   omega' = omega sqrt(T_goal / T),  f' = omega' (or fixed),  p'^2 = p^2 (f / f') (T_goal / T)^(3/2).
 /// Windows are as long as it takes to know T to 0.2 %: var(T mean) = T^2 2 tau / (N W), tau = 4 / (3 (1 - eps^2)) the
-/// relaxation of T in collisions per disk (at most 10^4 collisions per disk). Acts at beats only, on sums that don't depend on order: same bits always.
+/// relaxation of T in collisions per disk (at most 10^4 collisions per disk). Acts at beats only, on sums that don't
+/// depend on order: same bits always.
 Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& progress = {});
 
 }  // namespace sandglass

@@ -13,8 +13,8 @@
 
 namespace sandglass {
 
-/// The observers of a run. The relaxation is recorded from t = 0; the rest starts when equilibration ends and the plan of
-/// the measured stretch is known.
+/// The observers of a run. The relaxation is recorded from t = 0; the rest starts when equilibration ends and the plan
+/// of the measured stretch is known.
 class Measurement {
  public:
   /// \param beat one mean free time by the formula; the relaxation is recorded from a hundredth of it
@@ -25,8 +25,8 @@ class Measurement {
   [[nodiscard]] bool begun() const { return correlator_.has_value(); }
   [[nodiscard]] const MeasurementPlan& plan() const { return plan_; }
 
-  /// Advances the engine to time `end`, showing every observer its frames, and `extra`, an observer of the caller's, and
-  /// noting the tally at the end of each interval.
+  /// Advances the engine to time `end`, showing every observer its frames, and `extra`, an observer of the caller's,
+  /// and noting the tally at the end of each interval.
   template <class Engine, Observer Extra>
   void run_until(Engine& engine, double end, Extra& extra) {
     if (!begun()) {

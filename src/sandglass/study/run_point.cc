@@ -200,8 +200,8 @@ void PointRun::begin_measuring() {
   double rate = 1 / beat_;
   if (facts_.calibration.windows > 0) rate = facts_.calibration.collision_rate;
   if (counts_collisions() && marks_.early_beats > 1)
-    rate = (collisions_per_disk() - marks_.early_collisions) /
-           (static_cast<double>(beats_ - marks_.early_beats) * beat_);
+    rate =
+        (collisions_per_disk() - marks_.early_collisions) / (static_cast<double>(beats_ - marks_.early_beats) * beat_);
   facts_.equilibration_rate = rate;
   // The stretch is whole beats, however it is cut into intervals: these change what is measured, not the trajectory. An
   // interval holds at least two mean free times, or there would be nothing to correlate.
@@ -216,8 +216,8 @@ void PointRun::begin_measuring() {
   frames_->begin(plan);
   facts_.start_energy = kinetic_energy(simulation_->state());
   measuring_ = 1;
-  log(fmt::format("equilibrated after {} collisions per disk; measuring {} beats",
-                  collisions_per_disk(), measured_beats_));
+  log(fmt::format("equilibrated after {} collisions per disk; measuring {} beats", collisions_per_disk(),
+                  measured_beats_));
 }
 
 bool PointRun::measure() {

@@ -55,7 +55,8 @@ std::string bytes_of(const std::filesystem::path& path) {
 TEST_CASE("a run leaves all its files and a summary that adds up") {
   const Scratch scratch;
   const Summary s = run(tiny(), scratch / "a");
-  for (const char* name : {"config.toml", "summary.json", "observables.h5", "trajectory.h5", "checkpoint.h5", "run.log"})
+  for (const char* name :
+       {"config.toml", "summary.json", "observables.h5", "trajectory.h5", "checkpoint.h5", "run.log"})
     CHECK(std::filesystem::exists(scratch / "a" / name));
   CHECK(s.collisions_per_particle > 90);
   CHECK(s.collision_rate * s.time == doctest::Approx(s.collisions_per_particle).epsilon(1e-9));
@@ -87,7 +88,8 @@ TEST_CASE("a run stopped anywhere and resumed ends in the same bits of state, ob
     for (int beats = 1;; beats = beats * 3 / 2 + 1) {
       RunFolder folder = RunFolder::open(scratch / "cut", FolderMode::resume);
       int left = beats;
-      const RunResult result = run_point(config, folder, true, {.progress = {}, .stop_requested = [&] { return left-- <= 0; }});
+      const RunResult result =
+          run_point(config, folder, true, {.progress = {}, .stop_requested = [&] { return left-- <= 0; }});
       if (result.outcome == RunOutcome::stopped) {
         ++stops;
         continue;

@@ -21,10 +21,12 @@ State prepare(const Config& config, const Progress& progress) {
   const double eta = config.system.packing_fraction;
   const std::uint64_t seed = config.run.seed;
   switch (config.prepare.method) {
-    case PrepareMethod::insert: return insert_disks(small_count, big_count, mixture, eta, seed, progress);
+    case PrepareMethod::insert:
+      return insert_disks(small_count, big_count, mixture, eta, seed, progress);
     case PrepareMethod::quench:
       return quench_disks(small_count, big_count, mixture, eta, seed, config.prepare.jammed_fraction, progress);
-    case PrepareMethod::file: break;
+    case PrepareMethod::file:
+      break;
   }
   return adapt_state(read_start_file(config.prepare.file), small_count, big_count, mixture, eta, seed);
 }

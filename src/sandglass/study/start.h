@@ -7,8 +7,8 @@
 
 namespace sandglass {
 
-/// The beat of a run: one mean free time by the formula (Enskog, at the wanted temperature). Everything that the program
-/// decides during a run, it decides at multiples of the beat; an epoch is 1024 of them.
+/// The beat of a run: one mean free time by the formula (Enskog, at the wanted temperature). Everything that the
+/// program decides during a run, it decides at multiples of the beat; an epoch is 1024 of them.
 double beat_of(const Config& config);
 
 /// Small and big disks.

@@ -23,7 +23,8 @@ TEST_CASE("a start has the wanted disks, density, temperature, law and clocks") 
   CHECK(state.drive.frequency == 1 / beat_of(config));
   // Kicks at rate f per disk give it f <p^2> / (2 m) energy per time on average; collisions at rate omega take
   // (1 - eps^2) T / 2 per disk each (physics of the monodisperse estimate that the first guess uses, averaged over m).
-  const double gain = state.drive.frequency * state.drive.amplitude * state.drive.amplitude * (1 + 1 / (1.43 * 1.43)) / 2;
+  const double gain =
+      state.drive.frequency * state.drive.amplitude * state.drive.amplitude * (1 + 1 / (1.43 * 1.43)) / 2;
   const double loss = (1 - 0.49) * 2 / 2 / beat_of(config);
   CHECK(gain == doctest::Approx(loss).epsilon(1e-12));
   for (const Disk& disk : state.disks) CHECK(std::isfinite(disk.next_kick));

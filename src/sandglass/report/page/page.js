@@ -78,8 +78,8 @@
       "aria-label": `${figure.title}: ${figure.y.label} against ${figure.x.label}; curves: ${figure.curves.map((c) => c.name).join("; ")}. ${figure.caption}` });
     let plot = null;
     const draw = () => {
+      if (plot) plot.destroy();  // first, or it would hold its old width open
       const width = printing ? paperWidth : Math.max(240, holder.clientWidth);
-      if (plot) plot.destroy();
       plot = makePlot(figure, view, { width, height: Math.round(Math.min(520, Math.max(280, width * 0.62))) },
         palette(), holder);
       node.dataset.drawn = plot.data.slice(1).reduce((sum, ys) => sum + ys.filter(isNumber).length, 0);
@@ -103,7 +103,6 @@
       button("CSV", "Download the data of this figure as CSV", () => download(`${figure.id}.csv`, csvOf(figure))),
       button("PNG", "Download this figure as PNG", () => pngOf(figure, view, page.title, (blob) => download(`${figure.id}.png`, blob))));
     node.append(controls, holder, element("figcaption", { textContent: figure.caption }));
-    draw();
     return draw;
   }
 
@@ -179,7 +178,6 @@
       : `The middle of the box at the end of the run: a square of side ${shown(side, 5)} Rₛ with ${count} disks. The whole box, of side ${shown(box, 5)} Rₛ, holds too many disks to be seen; all of them are in checkpoint.h5.` }));
     parent.append(node);
     node.dataset.points = count;
-    draw();
     return draw;
   }
 
@@ -204,6 +202,7 @@
   const redraws = page.figures.map((figure) => addFigure(figure, figures));
   redraws.push(addPacking(page.packing, document.getElementById("packing")));
   const redraw = () => redraws.forEach((draw) => draw());
+  redraw();  // only now: how wide a figure is depends on what stands beside it
 
   let width = innerWidth, pending = 0;
   addEventListener("resize", () => {
