@@ -16,6 +16,7 @@
 #include "sandglass/dynamics/calendar.h"
 #include "sandglass/dynamics/contact.h"
 #include "sandglass/dynamics/drive.h"
+#include "sandglass/dynamics/epoch.h"
 #include "sandglass/dynamics/neighbours.h"
 #include "sandglass/dynamics/record.h"
 
@@ -40,6 +41,8 @@ class IsaEngine final : public Engine {
   void on_kick(std::uint32_t i, double t);
   void on_transit(std::uint32_t i, double t);
   void on_list_expiry(std::uint32_t i, double t);
+
+  void check_progress(double t);
 
   void predict_pending();
   void predict(std::uint32_t i);
@@ -68,6 +71,8 @@ class IsaEngine final : public Engine {
   Array<ColdRecord> cold_;
   Neighbours neighbours_;
   Calendar calendar_;
+  std::uint64_t until_stall_check_ = 1;
+  double progress_time_ = -never;
   GrowingArray<std::uint32_t> pending_;     // disks without a next event, to be predicted before time goes on
   GrowingArray<std::uint32_t> candidates_;  // possible partners of a kick
 };
@@ -79,6 +84,8 @@ void IsaEngine::run(double end) {
     if (i == no_disk) break;
     const Record& disk = records_[i];
     const double t = disk.next_time;
+    if (--until_stall_check_ == 0) [[unlikely]]
+      check_progress(t);
     switch (disk.next) {
       case Next::contact:
         on_contact(i, disk.partner, t);
@@ -95,6 +102,14 @@ void IsaEngine::run(double end) {
     }
   }
   state_.now = end;
+}
+
+/// In an inelastic collapse infinitely many collisions take place in a finite time, and the loop would never end. After
+/// 64 events per disk (and a million at least) time must have gone on by more than a billionth of a mean free time.
+void IsaEngine::check_progress(double t) {
+  if (t - progress_time_ < 1e-9 * state_.epoch_length / beats_per_epoch) report_collapse(state_, t);
+  progress_time_ = t;
+  until_stall_check_ = (std::uint64_t{1} << 20) + 64 * size_;
 }
 
 void IsaEngine::on_contact(std::uint32_t i, std::uint32_t j, double t) {
@@ -353,6 +368,8 @@ void IsaEngine::log_event(EventKind kind, double t, std::uint32_t i, std::uint32
 
 OverlappingPair IsaEngine::load(const std::uint32_t* order) {
   size_ = state_.disks.size();
+  until_stall_check_ = 1;
+  progress_time_ = -never;
   const Disk* const disks = state_.disks.data();
   if (records_.size() != size_) {
     records_ = Array<Record>(size_);

@@ -43,7 +43,8 @@ Engine* make_engine_baseline(State& state, const Tuning& tuning);
 Engine* make_engine_avx2(State& state, const Tuning& tuning);
 Engine* make_engine_avx512(State& state, const Tuning& tuning);
 
-/// Outside the engine, so that no library template is compiled for more than the baseline instruction set.
+// Outside the engine, so that no library template is compiled for more than the baseline instruction set.
 void append_event(std::vector<Event>& log, const Event& event);
+[[noreturn]] void report_collapse(const State& state, double t);  ///< throws RunError
 
 }  // namespace sandglass

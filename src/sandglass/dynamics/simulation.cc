@@ -38,6 +38,13 @@ InstructionSet choose_instruction_set() {
 
 void append_event(std::vector<Event>& log, const Event& event) { log.push_back(event); }
 
+void report_collapse(const State& state, double t) {
+  const double time = static_cast<double>(state.epoch) * state.epoch_length + t;
+  throw RunError("inelastic collapse at time " + std::to_string(time) +
+                 ": a few disks collide infinitely often in a finite time, as dissipative hard disks may. Set "
+                 "collision.collapse_policy = \"tc\" (or a longer collision.collapse_time)");
+}
+
 struct Simulation::Run {
   State state;  // its disks are with the engine, except for a moment at epochs
   std::unique_ptr<Engine> engine;

@@ -79,3 +79,17 @@ TEST_CASE("a frame equals that of the stored state") {
   CHECK(direct.time == stored.time);
   CHECK(direct.collisions_per_disk == stored.collisions_per_disk);
 }
+
+TEST_CASE("an inelastic collapse ends in an error, not in a hang") {
+  // Undriven disks of low restitution collapse soon [McNamara & Young 1994: for eps below about 0.6 at this size].
+  RandomSystem system;
+  system.particles = 200;
+  system.packing_fraction = 0.4;
+  system.restitution = 0.1;
+  State state = random_state(system);
+  Simulation unprotected(state);
+  CHECK_THROWS_AS(unprotected.run_until(200), RunError);
+  state.collision.collapse = CollapsePolicy::tc;
+  Simulation protected_by_tc(state);
+  CHECK_NOTHROW(protected_by_tc.run_until(200));
+}
