@@ -1,0 +1,123 @@
+// Vectors of doubles, as wide as the instruction set that this translation unit is compiled for.
+#pragma once
+
+#if defined(__AVX2__) && defined(__FMA__)
+#define SANDGLASS_SIMD 1
+#include <immintrin.h>
+
+#ifndef SANDGLASS_ISA
+#define SANDGLASS_ISA baseline
+#endif
+
+namespace sandglass {
+inline namespace SANDGLASS_ISA {
+
+// Each operation is the IEEE 754 one in every lane: the same bits as the scalar formula of the same shape.
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+
+struct Mask {
+  __mmask8 bits;
+  friend Mask operator&(Mask a, Mask b) { return {static_cast<__mmask8>(a.bits & b.bits)}; }
+  friend Mask operator|(Mask a, Mask b) { return {static_cast<__mmask8>(a.bits | b.bits)}; }
+  [[nodiscard]] unsigned lanes() const { return bits; }
+};
+
+struct Vector {
+  static constexpr unsigned width = 8;
+  __m512d v;
+  static Vector all(double x) { return {_mm512_set1_pd(x)}; }
+  friend Vector operator+(Vector a, Vector b) { return {_mm512_add_pd(a.v, b.v)}; }
+  friend Vector operator-(Vector a, Vector b) { return {_mm512_sub_pd(a.v, b.v)}; }
+  friend Vector operator*(Vector a, Vector b) { return {_mm512_mul_pd(a.v, b.v)}; }
+  friend Vector operator/(Vector a, Vector b) { return {_mm512_div_pd(a.v, b.v)}; }
+  friend Mask operator<(Vector a, Vector b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LT_OQ)}; }
+  friend Mask operator<=(Vector a, Vector b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LE_OQ)}; }
+  friend Mask operator==(Vector a, Vector b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_EQ_OQ)}; }
+};
+inline Vector fma(Vector a, Vector b, Vector c) { return {_mm512_fmadd_pd(a.v, b.v, c.v)}; }
+inline Vector fms(Vector a, Vector b, Vector c) { return {_mm512_fmsub_pd(a.v, b.v, c.v)}; }    // ab - c
+inline Vector fnma(Vector a, Vector b, Vector c) { return {_mm512_fnmadd_pd(a.v, b.v, c.v)}; }  // c - ab
+inline Vector sqrt(Vector a) { return {_mm512_sqrt_pd(a.v)}; }
+inline Vector max(Vector a, Vector b) { return {_mm512_max_pd(a.v, b.v)}; }
+inline Vector nearest_integer(Vector a) {
+  return {_mm512_roundscale_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
+}
+inline Vector choose(Mask m, Vector yes, Vector no) { return {_mm512_mask_blend_pd(m.bits, no.v, yes.v)}; }
+inline double smallest(Vector a) { return _mm512_reduce_min_pd(a.v); }
+
+/// Transposes eight rows of eight doubles: out[c] holds column c, lane r from rows[r].
+template <class Row>
+inline void load_columns(const Row* const (&rows)[8], Vector (&out)[8]) {
+  __m512d r[8], t[8];
+  for (int i = 0; i < 8; ++i) r[i] = _mm512_load_pd(reinterpret_cast<const double*>(rows[i]));
+  for (int i = 0; i < 8; i += 2) {
+    t[i] = _mm512_unpacklo_pd(r[i], r[i + 1]);
+    t[i + 1] = _mm512_unpackhi_pd(r[i], r[i + 1]);
+  }
+  // t[2i + odd]: columns 0 2 4 6 (+ odd) of rows 2i and 2i + 1, in 128-bit pieces.
+  for (int odd = 0; odd < 2; ++odd) {
+    const __m512d a = _mm512_shuffle_f64x2(t[odd], t[odd + 2], 0x88), b = _mm512_shuffle_f64x2(t[odd], t[odd + 2], 0xdd);
+    const __m512d c = _mm512_shuffle_f64x2(t[odd + 4], t[odd + 6], 0x88),
+                  d = _mm512_shuffle_f64x2(t[odd + 4], t[odd + 6], 0xdd);
+    out[odd].v = _mm512_shuffle_f64x2(a, c, 0x88);
+    out[odd + 2].v = _mm512_shuffle_f64x2(b, d, 0x88);
+    out[odd + 4].v = _mm512_shuffle_f64x2(a, c, 0xdd);
+    out[odd + 6].v = _mm512_shuffle_f64x2(b, d, 0xdd);
+  }
+}
+
+#else
+
+struct Mask {
+  __m256d bits;
+  friend Mask operator&(Mask a, Mask b) { return {_mm256_and_pd(a.bits, b.bits)}; }
+  friend Mask operator|(Mask a, Mask b) { return {_mm256_or_pd(a.bits, b.bits)}; }
+  [[nodiscard]] unsigned lanes() const { return static_cast<unsigned>(_mm256_movemask_pd(bits)); }
+};
+
+struct Vector {
+  static constexpr unsigned width = 4;
+  __m256d v;
+  static Vector all(double x) { return {_mm256_set1_pd(x)}; }
+  friend Vector operator+(Vector a, Vector b) { return {_mm256_add_pd(a.v, b.v)}; }
+  friend Vector operator-(Vector a, Vector b) { return {_mm256_sub_pd(a.v, b.v)}; }
+  friend Vector operator*(Vector a, Vector b) { return {_mm256_mul_pd(a.v, b.v)}; }
+  friend Vector operator/(Vector a, Vector b) { return {_mm256_div_pd(a.v, b.v)}; }
+  friend Mask operator<(Vector a, Vector b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_LT_OQ)}; }
+  friend Mask operator<=(Vector a, Vector b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_LE_OQ)}; }
+  friend Mask operator==(Vector a, Vector b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_EQ_OQ)}; }
+};
+inline Vector fma(Vector a, Vector b, Vector c) { return {_mm256_fmadd_pd(a.v, b.v, c.v)}; }
+inline Vector fms(Vector a, Vector b, Vector c) { return {_mm256_fmsub_pd(a.v, b.v, c.v)}; }    // ab - c
+inline Vector fnma(Vector a, Vector b, Vector c) { return {_mm256_fnmadd_pd(a.v, b.v, c.v)}; }  // c - ab
+inline Vector sqrt(Vector a) { return {_mm256_sqrt_pd(a.v)}; }
+inline Vector max(Vector a, Vector b) { return {_mm256_max_pd(a.v, b.v)}; }
+inline Vector nearest_integer(Vector a) {
+  return {_mm256_round_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
+}
+inline Vector choose(Mask m, Vector yes, Vector no) { return {_mm256_blendv_pd(no.v, yes.v, m.bits)}; }
+inline double smallest(Vector a) {
+  const __m128d half = _mm_min_pd(_mm256_castpd256_pd128(a.v), _mm256_extractf128_pd(a.v, 1));
+  return _mm_cvtsd_f64(_mm_min_sd(half, _mm_unpackhi_pd(half, half)));
+}
+
+/// Transposes four rows of eight doubles: out[c] holds column c, lane r from rows[r].
+template <class Row>
+inline void load_columns(const Row* const (&rows)[4], Vector (&out)[8]) {
+  for (int half = 0; half < 8; half += 4) {
+    __m256d r[4];
+    for (int i = 0; i < 4; ++i) r[i] = _mm256_load_pd(reinterpret_cast<const double*>(rows[i]) + half);
+    const __m256d a = _mm256_unpacklo_pd(r[0], r[1]), b = _mm256_unpackhi_pd(r[0], r[1]);
+    const __m256d c = _mm256_unpacklo_pd(r[2], r[3]), d = _mm256_unpackhi_pd(r[2], r[3]);
+    out[half].v = _mm256_permute2f128_pd(a, c, 0x20);
+    out[half + 1].v = _mm256_permute2f128_pd(b, d, 0x20);
+    out[half + 2].v = _mm256_permute2f128_pd(a, c, 0x31);
+    out[half + 3].v = _mm256_permute2f128_pd(b, d, 0x31);
+  }
+}
+
+#endif
+
+}  // namespace SANDGLASS_ISA
+}  // namespace sandglass
+#endif
