@@ -6,6 +6,16 @@
 #include <cmath>
 
 namespace sandglass {
+namespace {
+
+constexpr auto inverse_factorial = [] {
+  std::array<double, 18> values{1};
+  double factorial = 1;  // exact in a double up to 18!
+  for (int k = 1; k < 18; ++k) values[static_cast<std::size_t>(k)] = 1 / (factorial *= k);
+  return values;
+}();
+
+}  // namespace
 
 std::array<std::uint64_t, 4> random_words(std::uint64_t seed, Stream stream, std::uint64_t id, std::uint64_t count) {
   const r123::Philox4x64::ctr_type counter{{id, count, 0, 0}};
@@ -54,11 +64,11 @@ std::array<double, 2> portable_sincos_turns(double turns) {
   const double quarters = std::nearbyint(turns * 4);
   const double r = (turns - quarters * 0.25) * 0x1.921fb54442d18p+2;
   const double r2 = r * r;
-  double sine = 0, cosine = 0;
-  for (int k = 17; k >= 3; k -= 2) sine = (sine + 1) * (-r2 / (k * (k - 1)));
-  sine = r + r * sine;
-  for (int k = 16; k >= 2; k -= 2) cosine = (cosine + 1) * (-r2 / (k * (k - 1)));
-  cosine += 1;
+  double sine = inverse_factorial[17], cosine = inverse_factorial[16];
+  for (int k = 15; k >= 3; k -= 2) sine = inverse_factorial[static_cast<std::size_t>(k)] - r2 * sine;
+  for (int k = 14; k >= 2; k -= 2) cosine = inverse_factorial[static_cast<std::size_t>(k)] - r2 * cosine;
+  sine = r - r * r2 * sine;
+  cosine = 1 - r2 * cosine;
   switch (static_cast<std::int64_t>(quarters) & 3) {
     case 0:
       return {sine, cosine};

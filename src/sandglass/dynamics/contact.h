@@ -107,29 +107,40 @@ struct Impact {
   double dissipated;  ///< energy lost
 };
 
+/// The masses of two disks as a collision needs them.
+struct PairMasses {
+  double reduced, inverse_a, inverse_b;
+
+  PairMasses() = default;
+  PairMasses(double mass_a, double mass_b)
+      : reduced(mass_a * mass_b / (mass_a + mass_b)), inverse_a(1 / mass_a), inverse_b(1 / mass_b) {}
+};
+
 /// Collides a and b, both already advanced to the time of contact. With n the unit vector from a to b and g = v_a -
 /// v_b: b gains delta = mu (1 + eps) (g.n) n, a loses it; mu = m_a m_b / (m_a + m_b); the energy lost is mu (1 - eps^2)
 /// (g.n)^2 / 2. (The paper prints delta with a spurious factor 1/2.)
 template <class A, class B>
-[[gnu::always_inline]] inline Impact collide(A& a, B& b, double mass_a, double mass_b, double restitution,
-                                             const Box& box) {
+[[gnu::always_inline]] inline Impact collide(A& a, B& b, const PairMasses& masses, double restitution, const Box& box) {
   const double rx = box.nearest(b.x - a.x), ry = box.nearest(b.y - a.y);
   const double rr = std::fma(rx, rx, ry * ry);
   auto approach = [&] { return std::fma(rx, b.vx - a.vx, ry * (b.vy - a.vy)); };  // r.(v_b - v_a)
   auto push = [&](double impulse_over_distance) {
-    a.vx -= impulse_over_distance * rx / mass_a;
-    a.vy -= impulse_over_distance * ry / mass_a;
-    b.vx += impulse_over_distance * rx / mass_b;
-    b.vy += impulse_over_distance * ry / mass_b;
+    const double px = impulse_over_distance * rx, py = impulse_over_distance * ry;
+    a.vx -= px * masses.inverse_a;
+    a.vy -= py * masses.inverse_a;
+    b.vx += px * masses.inverse_b;
+    b.vy += py * masses.inverse_b;
   };
-  const double mu = mass_a * mass_b / (mass_a + mass_b);
   const double rv = approach();
-  push(-mu * (1 + restitution) * rv / rr);
-  // In a grazing contact rounding may leave the pair approaching still, and it would collide again in place for ever.
-  // Part it by impulses of rounding size until the very formula of contact_time says that it recedes.
-  const double ulp = 0x1p-52 * (std::fabs(a.vx) + std::fabs(a.vy) + std::fabs(b.vx) + std::fabs(b.vy));
-  for (double nudge = mu * ulp / std::sqrt(rr); approach() < 0; nudge *= 2) push(nudge);
-  return {-mu * (1 + restitution) * rv, mu * (1 - restitution * restitution) * rv * rv / (2 * rr)};
+  const double virial = -masses.reduced * (1 + restitution) * rv;
+  push(virial / rr);
+  if (approach() < 0) [[unlikely]] {
+    // In a grazing contact rounding may leave the pair approaching still, and it would collide again in place for
+    // ever. Part it by impulses of rounding size until the very formula of contact_time says that it recedes.
+    const double ulp = 0x1p-52 * (std::fabs(a.vx) + std::fabs(a.vy) + std::fabs(b.vx) + std::fabs(b.vy));
+    for (double nudge = masses.reduced * ulp / std::sqrt(rr); approach() < 0; nudge *= 2) push(nudge);
+  }
+  return {virial, -0.5 * virial * (1 - restitution) * rv / rr};
 }
 
 }  // namespace SANDGLASS_ISA

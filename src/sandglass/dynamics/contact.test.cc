@@ -57,7 +57,7 @@ TEST_CASE("a collision keeps momentum, reverses the normal velocity times eps, l
     const auto energy = [&] { return 0.5 * ma * (a.vx * a.vx + a.vy * a.vy) + 0.5 * mb * (b.vx * b.vx + b.vy * b.vy); };
     if (normal() > 0) continue;
     const double before = normal(), along = tangential(), e = energy(), px = ma * a.vx + mb * b.vx;
-    const Impact impact = collide(a, b, ma, mb, eps, box);
+    const Impact impact = collide(a, b, PairMasses(ma, mb), eps, box);
     // A dozen roundings of numbers of order 1 to 10.
     CHECK(normal() == doctest::Approx(-eps * before).epsilon(1e-12).scale(1e-2));
     CHECK(tangential() == doctest::Approx(along).epsilon(1e-12).scale(1e-2));
@@ -82,7 +82,7 @@ TEST_CASE("after any collision, however grazing, the pair recedes and is not pre
     a.vx = 3;
     b.vx = 3 - sine - graze * cosine;
     b.vy = cosine - graze * sine;
-    collide(a, b, 1, 1, 0.5, box);
+    collide(a, b, PairMasses(1, 1), 0.5, box);
     CHECK(std::isinf(contact_time(a, b, 2.0, box)));
     CHECK(std::isinf(contact_time(b, a, 2.0, box)));
   }

@@ -32,10 +32,10 @@ struct Kick {
 /// Gives momentum (px, py) to a disk already advanced to the time of the kick; returns the energy gained,
 /// p.v + p^2 / 2m.
 template <class Record>
-[[gnu::always_inline]] inline double give_momentum(Record& disk, double px, double py, double mass) {
-  const double gained = px * disk.vx + py * disk.vy + (px * px + py * py) / (2 * mass);
-  disk.vx += px / mass;
-  disk.vy += py / mass;
+[[gnu::always_inline]] inline double give_momentum(Record& disk, double px, double py, double inverse_mass) {
+  const double gained = px * disk.vx + py * disk.vy + 0.5 * (px * px + py * py) * inverse_mass;
+  disk.vx += px * inverse_mass;
+  disk.vy += py * inverse_mass;
   return gained;
 }
 

@@ -30,7 +30,10 @@ constexpr double never = std::numeric_limits<double>::infinity();
 class IsaEngine final : public Engine {
  public:
   IsaEngine(State& state, const Tuning& tuning)
-      : state_(state), tuning_(tuning), box_(state.box_length, state.mixture) {}
+      : state_(state), tuning_(tuning), box_(state.box_length, state.mixture) {
+    for (const int a : {small, big})
+      for (const int b : {small, big}) masses_[a][b] = PairMasses(state.mixture.mass[a], state.mixture.mass[b]);
+  }
 
   OverlappingPair load(const std::uint32_t* order) override;
   void store(Disk* disks) const override;
@@ -66,12 +69,13 @@ class IsaEngine final : public Engine {
   [[nodiscard]] double mean_lead() const;
   [[nodiscard]] double default_skin() const;
 
-  [[nodiscard]] double mass(const Record& disk) const { return state_.mixture.mass[disk.species]; }
+  [[nodiscard]] double inverse_mass(const Record& disk) const { return masses_[disk.species][disk.species].inverse_a; }
   [[nodiscard]] double largest_radius() const { return box_.length / 4 - box_.transit; }
 
   State& state_;
   Tuning tuning_;
   Box box_;
+  PairMasses masses_[species_count][species_count];  // by species of the first and the second disk
   std::size_t size_ = 0;
   Array<Record> records_;
   Array<ColdRecord> cold_;
@@ -127,7 +131,7 @@ void IsaEngine::on_contact(std::uint32_t i, std::uint32_t j, double t) {
 
   const CollisionLaw& law = state_.collision;
   const bool elastic = elastic_by_tc(law, t, cold_a.last_contact, cold_b.last_contact);
-  const Impact impact = collide(a, b, mass(a), mass(b), elastic ? 1.0 : law.restitution, box_);
+  const Impact impact = collide(a, b, masses_[a.species][b.species], elastic ? 1.0 : law.restitution, box_);
   cold_a.last_contact = cold_b.last_contact = t;
 
   Tally& tally = state_.tally;
@@ -163,12 +167,12 @@ void IsaEngine::on_kick(std::uint32_t i, double t) {
   ++tally.kicks;
   const double px = state_.drive.amplitude * kick.px, py = state_.drive.amplitude * kick.py;
   advance(disk, cold.image_x, cold.image_y, t, box_);
-  double gained = give_momentum(disk, px, py, mass(disk));
+  double gained = give_momentum(disk, px, py, inverse_mass(disk));
   ++tally.kicked[disk.species];
   if (pair) {
     Record& partner = records_[j];
     advance(partner, cold_[j].image_x, cold_[j].image_y, t, box_);
-    gained += give_momentum(partner, -px, -py, mass(partner));
+    gained += give_momentum(partner, -px, -py, inverse_mass(partner));
     ++tally.kicked[partner.species];
   }
   tally.injected.add(gained);

@@ -69,7 +69,8 @@ void Reference::perform(Event event) {
     bring(a);
     bring(b);
     const bool elastic = elastic_by_tc(state_.collision, t, a.last_contact, b.last_contact);
-    const Impact impact = collide(a, b, mass(a), mass(b), elastic ? 1.0 : state_.collision.restitution, box);
+    const Impact impact =
+        collide(a, b, PairMasses(mass(a), mass(b)), elastic ? 1.0 : state_.collision.restitution, box);
     a.last_contact = b.last_contact = t;
     ++tally.contacts[a.species + b.species];
     tally.elastic_contacts += elastic;
@@ -86,12 +87,12 @@ void Reference::perform(Event event) {
       ++tally.kicks;
       const double px = state_.drive.amplitude * kick.px, py = state_.drive.amplitude * kick.py;
       bring(a);
-      double gained = give_momentum(a, px, py, mass(a));
+      double gained = give_momentum(a, px, py, 1 / mass(a));
       ++tally.kicked[a.species];
       if (pair) {
         Disk& b = state_.disks[event.second];
         bring(b);
-        gained += give_momentum(b, -px, -py, mass(b));
+        gained += give_momentum(b, -px, -py, 1 / mass(b));
         ++tally.kicked[b.species];
       }
       tally.injected.add(gained);

@@ -56,7 +56,8 @@ inline void load_columns(const Row* const (&rows)[8], Vector (&out)[8]) {
   }
   // t[2i + odd]: columns 0 2 4 6 (+ odd) of rows 2i and 2i + 1, in 128-bit pieces.
   for (int odd = 0; odd < 2; ++odd) {
-    const __m512d a = _mm512_shuffle_f64x2(t[odd], t[odd + 2], 0x88), b = _mm512_shuffle_f64x2(t[odd], t[odd + 2], 0xdd);
+    const __m512d a = _mm512_shuffle_f64x2(t[odd], t[odd + 2], 0x88),
+                  b = _mm512_shuffle_f64x2(t[odd], t[odd + 2], 0xdd);
     const __m512d c = _mm512_shuffle_f64x2(t[odd + 4], t[odd + 6], 0x88),
                   d = _mm512_shuffle_f64x2(t[odd + 4], t[odd + 6], 0xdd);
     out[odd].v = _mm512_shuffle_f64x2(a, c, 0x88);
