@@ -8,8 +8,11 @@
 namespace sandglass {
 namespace {
 
-constexpr double wanted_error = 0.002;
 constexpr int most_windows = 8;
+
+// Relative standard error of T to be reached: 0.2 %, but in small systems no better than a twentieth of the spread of T
+// itself, 1/sqrt(N).
+double wanted_error(double disks) { return std::fmax(0.002, 0.05 / std::sqrt(disks)); }
 
 struct Window {
   double temperature, collision_rate;
@@ -57,7 +60,8 @@ Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& 
   const auto disks = static_cast<double>(start.size());
   const double restitution = start.collision.restitution;
   const double relaxation = 4 / (3 * (1 - restitution * restitution));
-  const double full = std::fmin(std::fmax(2 * relaxation / (disks * wanted_error * wanted_error), 50.0), 1e4);
+  const double error = wanted_error(disks);
+  const double full = std::fmin(std::fmax(2 * relaxation / (disks * error * error), 50.0), 1e4);
   const auto settling = static_cast<std::uint64_t>(std::ceil(5 * relaxation));
 
   Calibration result{.frequency = start.drive.frequency, .amplitude = start.drive.amplitude};
@@ -77,7 +81,7 @@ Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& 
     const double ratio = goal.temperature / temperature;
     const double frequency = goal.frequency.value_or(rate * std::sqrt(ratio));
     result.converged =
-        window >= 2 && std::fabs(ratio - 1) < 2 * wanted_error && std::fabs(frequency / result.frequency - 1) < 0.01;
+        window >= 2 && std::fabs(ratio - 1) < 2 * error && std::fabs(frequency / result.frequency - 1) < 0.01;
     result.amplitude *= std::sqrt(result.frequency / frequency * ratio * std::sqrt(ratio));
     result.frequency = frequency;
     if (!result.converged) scratch.drive(result.frequency, result.amplitude);

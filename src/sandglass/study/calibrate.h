@@ -29,9 +29,9 @@ struct Calibration {
 /// Runs a copy of `start` and adjusts amplitude and frequency together. In a steady state p^2 f = const * T^(3/2) (what
 /// kicks put in, collisions at rate omega ~ sqrt(T) take out), so after a window with mean temperature T and rate omega
 ///   omega' = omega sqrt(T_goal / T),  f' = omega' (or fixed),  p'^2 = p^2 (f / f') (T_goal / T)^(3/2).
-/// Windows are as long as it takes to know T to 0.2 %: var(T mean) = T^2 2 tau / (N W), tau = 4 / (3 (1 - eps^2)) the
-/// relaxation of T in collisions per disk (at most 10^4 collisions per disk). Acts at beats only, on sums that don't
-/// depend on order: same bits always.
+/// Windows are as long as it takes to know T to 0.2 % (to 0.05 / sqrt(N) in systems below N = 625): var(T mean) = T^2 2
+/// tau / (N W), tau = 4 / (3 (1 - eps^2)) the relaxation of T in collisions per disk (at most 10^4 collisions per
+/// disk). Acts at beats only, on sums that don't depend on order: same bits always.
 Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& progress = {});
 
 }  // namespace sandglass

@@ -142,6 +142,8 @@ Summary summarise(const Config& config, const State& end, const Measurement& mea
   summary.collisions_per_second = facts.collisions_per_second;
   summary.state_hash = state_hash(end);
 
+  if (config.run.threads > 1)
+    summary.decisions.push_back("One trajectory runs on one core in this version; run.threads had no effect.");
   describe_motion(measurement.correlator(), summary);
   describe_energy(end, averages, facts, summary);
   describe_drive(config, end, facts, summary);
