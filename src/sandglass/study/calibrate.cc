@@ -8,11 +8,28 @@
 namespace sandglass {
 namespace {
 
-constexpr int most_windows = 8;
+constexpr int rough_windows = 2, least_windows = 3, most_windows = 12;
 
 // Relative standard error of T to be reached: 0.2 %, but in small systems no better than a twentieth of the spread of T
 // itself, 1/sqrt(N).
 double wanted_error(double disks) { return std::fmax(0.002, 0.05 / std::sqrt(disks)); }
+
+/// Mean and its standard error of a few values, in the order in which they came.
+struct Average {
+  double sum = 0, squares = 0;
+  int count = 0;
+
+  void add(double value) {
+    sum += value;
+    squares += value * value;
+    ++count;
+  }
+  [[nodiscard]] double mean() const { return sum / count; }
+  [[nodiscard]] double relative_error() const {
+    const double variance = std::fmax(squares / count - mean() * mean(), 0.0);
+    return std::sqrt(variance / (count - 1)) / mean();
+  }
+};
 
 struct Window {
   double temperature, collision_rate;
@@ -61,30 +78,42 @@ Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& 
   const double restitution = start.collision.restitution;
   const double relaxation = 4 / (3 * (1 - restitution * restitution));
   const double error = wanted_error(disks);
-  const double full = std::fmin(std::fmax(2 * relaxation / (disks * error * error), 50.0), 1e4);
+  const double length = std::fmin(std::fmax(relaxation / (disks * error * error), 25.0), 5e3);
   const auto settling = static_cast<std::uint64_t>(std::ceil(5 * relaxation));
 
   Calibration result{.frequency = start.drive.frequency, .amplitude = start.drive.amplitude};
   Scratch scratch(std::move(start), goal.beat);
-  for (int window = 0; window < most_windows && !result.converged; ++window) {
-    report_progress(progress, "calibrating the drive", window / static_cast<double>(most_windows));
-    // Rough first, exact when the drive is nearly right. Ageing happens once, when the temperature is.
-    if (window == 2) scratch.run(static_cast<std::uint64_t>(goal.settle));
-    const auto beats = static_cast<std::uint64_t>(std::ceil(window < 2 ? full / 4 : full));
+  Average frequencies, amplitudes;
+  for (int window = 0; amplitudes.count < most_windows; ++window) {
+    const bool rough = window < rough_windows;
+    report_progress(progress, "calibrating the drive", window / static_cast<double>(rough_windows + most_windows));
+    // Ageing happens once, when the temperature is about right.
+    if (window == rough_windows) scratch.run(static_cast<std::uint64_t>(goal.settle));
     scratch.run(settling);
-    const auto [temperature, rate] = scratch.measure(beats);
+    const auto [temperature, rate] =
+        scratch.measure(static_cast<std::uint64_t>(std::ceil(rough ? length / 2 : length)));
     ++result.windows;
     result.temperature = temperature;
-    result.temperature_error = std::sqrt(2 * relaxation / (disks * static_cast<double>(beats)));
     result.collision_rate = rate;
 
     const double ratio = goal.temperature / temperature;
     const double frequency = goal.frequency.value_or(rate * std::sqrt(ratio));
-    result.converged =
-        window >= 2 && std::fabs(ratio - 1) < 2 * error && std::fabs(frequency / result.frequency - 1) < 0.01;
-    result.amplitude *= std::sqrt(result.frequency / frequency * ratio * std::sqrt(ratio));
-    result.frequency = frequency;
-    if (!result.converged) scratch.drive(result.frequency, result.amplitude);
+    const double amplitude = result.amplitude * std::sqrt(result.frequency / frequency * ratio * std::sqrt(ratio));
+    if (rough) {
+      result.frequency = frequency;
+      result.amplitude = amplitude;
+    } else {
+      frequencies.add(frequency);
+      amplitudes.add(amplitude);
+      result.frequency = frequencies.mean();
+      result.amplitude = amplitudes.mean();
+      if (amplitudes.count >= least_windows) {
+        result.temperature_error = 2 * amplitudes.relative_error();  // T ~ p^2
+        result.converged = result.temperature_error < 2 * error;
+        if (result.temperature_error < error) break;
+      }
+    }
+    scratch.drive(result.frequency, result.amplitude);
   }
   report_progress(progress, "calibrating the drive", 1);
   return result;

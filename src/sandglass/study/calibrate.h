@@ -19,19 +19,21 @@ struct CalibrationGoal {
 /// The values to freeze, and how well they are known.
 struct Calibration {
   double frequency = 0, amplitude = 0;
-  double temperature = 0;        ///< mean over the last window, before the last correction
-  double temperature_error = 0;  ///< expected relative standard error of T in the last window
+  double temperature = 0;        ///< mean over the last window
+  double temperature_error = 0;  ///< relative standard error of T that the frozen values will give, from their scatter
   double collision_rate = 0;     ///< per disk and time, over the last window
   std::uint64_t windows = 0;
-  bool converged = false;
+  std::uint64_t converged = 0;  ///< 1 if temperature_error is less than twice what was aimed at
 };
 
 /// Runs a copy of `start` and adjusts amplitude and frequency together. In a steady state p^2 f = const * T^(3/2) (what
 /// kicks put in, collisions at rate omega ~ sqrt(T) take out), so after a window with mean temperature T and rate omega
 ///   omega' = omega sqrt(T_goal / T),  f' = omega' (or fixed),  p'^2 = p^2 (f / f') (T_goal / T)^(3/2).
-/// Windows are as long as it takes to know T to 0.2 % (to 0.05 / sqrt(N) in systems below N = 625): var(T mean) = T^2 2
-/// tau / (N W), tau = 4 / (3 (1 - eps^2)) the relaxation of T in collisions per disk (at most 10^4 collisions per
-/// disk). Acts at beats only, on sums that don't depend on order: same bits always.
+/// Two rough windows come first; then the results of 3 to 12 longer ones are averaged until, by their scatter, T is
+/// known to 0.2 % (to 0.05 / sqrt(N) in systems below N = 625). A window is as long as a gas would need for sqrt(2)
+/// times that: var(T mean) = T^2 2 tau / (N W), tau = 4 / (3 (1 - eps^2)) the relaxation of T in collisions per disk; T
+/// of dense and strongly dissipative fluids is correlated for longer. Acts at beats only, in a fixed order: same bits
+/// always.
 Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& progress = {});
 
 }  // namespace sandglass

@@ -286,7 +286,8 @@ FieldGroup PointRun::own_fields() {
            {"calibration_temperature", &c.temperature},
            {"calibration_temperature_error", &c.temperature_error},
            {"calibration_collision_rate", &c.collision_rate},
-           {"calibration_windows", &c.windows}}};
+           {"calibration_windows", &c.windows},
+           {"calibration_converged", &c.converged}}};
 }
 
 Summary PointRun::finish() {

@@ -47,13 +47,12 @@ void describe_drive(const Config& config, const State& end, const RunFacts& fact
   }
   const Calibration& c = facts.calibration;
   decided(fmt::format(
-      "The drive was calibrated on a copy of the start and then frozen: {} kicks per disk and time ({}), kick "
-      "amplitude "
-      "p_Dr = {:.6g}. {} windows were measured; in the last one T was {:.4f} (expected error {:.4f}) before a last "
-      "correction.",
-      fmt::format("{:.6g}", end.drive.frequency),
-      config.drive.frequency ? "as asked for" : "the collision rate of the steady state", end.drive.amplitude,
-      c.windows, c.temperature, c.temperature_error * c.temperature));
+      "The drive was calibrated on a copy of the start and then frozen: {:.6g} kicks per disk and time ({}), kick "
+      "amplitude p_Dr = {:.6g}, from {} windows, by whose scatter T should come out right to {:.2g} %.",
+      end.drive.frequency, config.drive.frequency ? "as asked for" : "the collision rate of the steady state",
+      end.drive.amplitude, c.windows, 100 * c.temperature_error));
+  if (!c.converged)
+    summary.warnings.push_back("The calibration of the drive did not settle: T may differ from drive.temperature.");
   if (end.tally.kicks_without_partner > 0)
     decided(fmt::format("{} of {} kicks were skipped because no disk was within reach = {} contact distances.",
                         end.tally.kicks_without_partner, end.tally.kicks_without_partner + end.tally.kicks,
