@@ -54,6 +54,13 @@ class Configuration(program.Case):
         # Two disks at this density would need a box that is too small for an exact run.
         self.refused_by("system.particles=2", saying=["box"])
 
+    def test_reach_beyond_half_the_box(self):
+        self.refused_by("drive.partner=within", "drive.reach=100", saying=["drive.reach", "at most"])
+
+    def test_lengths(self):
+        self.refused_by("run.collisions=10", "run.intervals=6", saying=["run.intervals", "at most 5"])
+        self.refused_by("collision.restitution=0.9999", saying=["collision.restitution", "0.999"])
+
     def test_other_values(self):
         self.refused_by("run.intervals=0", saying=["run.intervals"])
         self.refused_by("run.collisions=0", saying=["run.collisions"])

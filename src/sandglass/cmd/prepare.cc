@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ int prepare_command(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
   }
   const Config config = read_config(config_file, assignments);
+  if (std::filesystem::exists(output))
+    throw InputError(fmt::format("{} exists already and is not overwritten: remove it or choose another name", output));
   State state;
   {
     ProgressBar bar;

@@ -60,7 +60,7 @@ void print_summary(const Summary& s, const RunFolder& folder) {
 
 Arguments parse(int argc, char** argv, int& exit_code) {
   Arguments arguments;
-  std::uint64_t threads = 0;
+  std::string threads;
   CLI::App app{"Simulates and measures one state point.", "sandglass run"};
   app.add_option("config", arguments.config, "configuration (TOML); all keys: sandglass info --keys")->required();
   app.add_option("-o,--output", arguments.folder, "folder for the results (default: runs/NAME of the configuration)");
@@ -76,7 +76,7 @@ Arguments parse(int argc, char** argv, int& exit_code) {
   } catch (const CLI::ParseError& error) {
     exit_code = app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
   }
-  if (threads > 0) arguments.assignments.push_back(fmt::format("run.threads={}", threads));
+  if (!threads.empty()) arguments.assignments.push_back(fmt::format("run.threads={}", threads));
   if (arguments.folder.empty())
     arguments.folder = (std::filesystem::path("runs") / std::filesystem::path(arguments.config).stem()).string();
   return arguments;
@@ -102,8 +102,8 @@ int run_command(int argc, char** argv) {
                         .stop_requested = stop_signal_came});
   }
   if (result.outcome == RunOutcome::stopped) {
-    fmt::print("Stopped at a checkpoint. Go on with: sandglass run {} -o {} --resume\n", arguments.config,
-               arguments.folder);
+    const std::string config_file = folder.holds_run() ? folder.config().string() : arguments.config;
+    fmt::print("Stopped. Go on with: sandglass run {} -o {} --resume\n", config_file, arguments.folder);
     return static_cast<int>(ExitCode::resumable);
   }
   if (result.outcome == RunOutcome::already_finished) fmt::print("This run is finished already; nothing was done.\n");

@@ -83,8 +83,8 @@ class IsaEngine final : public Engine {
   Calendar calendar_;
   std::uint64_t until_stall_check_ = 1;
   double progress_time_ = -never;
-  GrowingArray<std::uint32_t> pending_;     // disks without a next event, to be predicted before time goes on
-  GrowingArray<std::uint32_t> candidates_;  // possible partners of a kick
+  GrowingArray<std::uint32_t> pending_;  // disks without a next event, to be predicted before time goes on
+  GrowingArray<DiskName> candidates_;    // possible partners of a kick
 };
 
 void IsaEngine::run(double end) {
@@ -398,14 +398,13 @@ std::uint32_t IsaEngine::partner_within_reach(std::uint32_t i, double t, const K
   auto visit = [&](std::uint32_t k) {
     if (k == i) return;
     if (!within_reach(disk, records_[k], disk.radius + records_[k].radius, state_.drive.reach, t, box_)) return;
-    candidates_.push_back(k);  // insertion sort by id: there are few
-    for (std::size_t n = candidates_.size() - 1; n > 0 && cold_[candidates_[n]].id < cold_[candidates_[n - 1]].id; --n)
-      std::swap(candidates_[n], candidates_[n - 1]);
+    candidates_.push_back({cold_[k].id, k});
   };
   const double x = std::fma(disk.vx, t - disk.time, disk.x), y = std::fma(disk.vy, t - disk.time, disk.y);
   const double radius = state_.drive.reach * (disk.radius + largest_radius()) + neighbours_.leash() + 1e-9;
   neighbours_.visit_near(x, y, radius, &cold_[0], visit);
-  return candidates_.empty() ? no_disk : candidates_[kick.pick(candidates_.size())];
+  if (candidates_.empty()) return no_disk;
+  return nth_by_id(candidates_.begin(), candidates_.end(), kick.pick(candidates_.size())).slot;
 }
 
 /// Canonical order of two disks' next events at one time: kind, then ids. (List expiry, no event, comes last.)

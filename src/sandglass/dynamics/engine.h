@@ -45,6 +45,10 @@ Engine* make_engine_avx512(State& state, const Tuning& tuning);
 
 // Outside the engine, so that no library template is compiled for more than the baseline instruction set.
 void append_event(std::vector<Event>& log, const Event& event);
-[[noreturn]] void report_collapse(const State& state, double t);  ///< throws RunError
+struct DiskName {
+  std::uint32_t id, slot;
+};
+DiskName nth_by_id(DiskName* first, DiskName* last, std::size_t n);  ///< the n-th (from 0) in the order of ids
+[[noreturn]] void report_collapse(const State& state, double t);     ///< throws RunError
 
 }  // namespace sandglass

@@ -38,6 +38,11 @@ InstructionSet choose_instruction_set() {
 
 void append_event(std::vector<Event>& log, const Event& event) { log.push_back(event); }
 
+DiskName nth_by_id(DiskName* first, DiskName* last, std::size_t n) {
+  std::nth_element(first, first + n, last, [](const DiskName& a, const DiskName& b) { return a.id < b.id; });
+  return first[n];
+}
+
 void report_collapse(const State& state, double t) {
   const double time = static_cast<double>(state.epoch) * state.epoch_length + t;
   throw RunError("inelastic collapse at time " + std::to_string(time) +
@@ -50,15 +55,14 @@ struct Simulation::Run {
   std::unique_ptr<Engine> engine;
   std::size_t size = 0;
 
-  void load() {
+  /// Gives the disks to the engine. Returns what is wrong with them, if two of them overlap.
+  std::string load() {
     size = state.size();
     const OverlappingPair overlap = engine->load(spatial_order(state).data());
-    if (overlap.first != no_disk)
-      throw InputError("disks " + std::to_string(overlap.first) + " and " + std::to_string(overlap.second) +
-                       " overlap by " + std::to_string(overlap.depth) +
-                       " R_s (hard disks may not overlap): prepare the start at a lower packing fraction, or let "
-                       "the program prepare it");
     state.disks = {};  // give the memory back
+    if (overlap.first == no_disk) return {};
+    return "disks " + std::to_string(overlap.first) + " and " + std::to_string(overlap.second) + " overlap by " +
+           std::to_string(overlap.depth) + " R_s";
   }
 
   void store(State& target) const {
@@ -71,7 +75,9 @@ Simulation::Simulation(State state, const Tuning& tuning) : run_(std::make_uniqu
   check_start(state);
   run_->state = std::move(state);
   run_->engine.reset(choose_instruction_set().make_engine(run_->state, tuning));
-  run_->load();
+  if (const std::string overlap = run_->load(); !overlap.empty())
+    throw InputError(overlap + " (hard disks may not overlap): prepare the start at a lower packing fraction, or let " +
+                     "the program prepare it");
 }
 
 Simulation::~Simulation() = default;
@@ -89,7 +95,10 @@ void Simulation::run_until(double end) {
     run_->engine->run(state.epoch_length);
     run_->store(state);
     pass_epoch(state);
-    run_->load();
+    if (const std::string overlap = run_->load(); !overlap.empty())
+      throw RunError("at time " + std::to_string(state.time()) + " " + overlap +
+                     ": the run has gone wrong and cannot go on. Resume from the last checkpoint, and please report "
+                     "this with config.toml");
   }
 }
 

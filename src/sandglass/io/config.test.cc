@@ -55,7 +55,7 @@ Config any_config(const std::string& file) {
   c.run.seed = *rc::gen::inRange<std::uint64_t>(0, std::uint64_t{1} << 63);
   c.run.equilibrate = real(0, 1e6);
   c.run.collisions = real(1000, 1e9);
-  c.run.intervals = *rc::gen::inRange<std::uint64_t>(1, 1000);
+  c.run.intervals = *rc::gen::inRange<std::uint64_t>(1, 500);
   c.run.threads = *rc::gen::inRange<std::uint64_t>(1, 64);
   c.observe.wavenumbers.clear();
   for (auto n = *rc::gen::inRange(1, 32); n > 0; --n) c.observe.wavenumbers.push_back(real(1e-3, 100));
@@ -156,7 +156,7 @@ TEST_CASE("what no single key can tell") {
   CHECK(refused("prepare.method = \"insert\"", {}, {"0.45", "quench"}));
   CHECK(refused("system.packing_fraction = 0.005", {}, {"insert"}));
   CHECK(refused("prepare.jammed_fraction = 0.8", {}, {"must be above"}));
-  CHECK(refused("run.intervals = 11\nrun.collisions = 10.5", {}, {"at most 10"}));
+  CHECK(refused("run.intervals = 11\nrun.collisions = 10.5", {}, {"at most 5"}));
   CHECK(refused("output.trajectory_frames = 1", {}, {"0 (no file) or at least 2"}));
 }
 
@@ -175,10 +175,7 @@ TEST_CASE("start files: relative to the configuration's folder, on the command l
   spill(folder / "run.toml", "[prepare]\nmethod = \"file\"\nfile = \"start.h5\"\n");
   CHECK(read_config(folder / "run.toml").prepare.file == (folder / "start.h5").string());
   CHECK(refused("", {"prepare.method=file"}, {"needs prepare.file"}));
-  CHECK(refused("", {"prepare.method=file", "prepare.file=absent.h5"},
-                {(std::filesystem::current_path() / "absent.h5").string(), "not there"}));
   CHECK(refused("prepare.file = \"a.h5\"", {}, {"prepare.method = \"file\""}));
-  CHECK(refused("", {"prepare.method=file", "prepare.file=" + folder.path().string()}, {"not a file"}));
   CHECK(refused("", {"prepare.method=file", "prepare.file=\xff\xfe"}, {"UTF-8"}));
 }
 

@@ -84,13 +84,23 @@ void check_prepare(const Config& config) {
   if (prepare.file.empty()) {
     throw InputError("prepare.method = \"file\" needs prepare.file, the state, checkpoint or trajectory to start from");
   }
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(prepare.file, error)) {
-    throw InputError(
-        fmt::format("prepare.file = \"{}\" is not there or not a file: check the path (in a file it is "
-                    "relative to the folder of that file)",
-                    prepare.file));
-  }
+}
+
+/// Partners are looked for among nearest images only.
+void check_reach(const Config& config) {
+  if (config.drive.kind != DriveKind::pair || config.drive.partner != PartnerRule::within) return;
+  const double ratio = config.system.size_ratio;
+  const Mixture mixture{{1, ratio}, {1, ratio * ratio}};
+  const auto disks = static_cast<double>(config.system.particles);
+  const auto big_count = static_cast<std::size_t>(std::llround(disks * config.system.big_fraction));
+  const double length =
+      box_length_for(mixture, config.system.particles - big_count, big_count, config.system.packing_fraction);
+  const double most = length / (4 * std::max(1.0, ratio));
+  if (config.drive.reach <= most) return;
+  throw InputError(
+      fmt::format("drive.reach = {} contact distances is more than half the box of side {:.4g}: set it to at most "
+                  "{:.4g}, or use more particles",
+                  config.drive.reach, length, most));
 }
 
 }  // namespace
@@ -98,18 +108,26 @@ void check_prepare(const Config& config) {
 void check_config(const Config& config) {
   check_system(config.system);
   check_prepare(config);
+  check_reach(config);
   if (config.collision.restitution == 1 && config.drive.kind != DriveKind::none) {
     throw InputError(
         "collision.restitution = 1 with driving has no steady state: nothing takes out the energy that kicks put in; "
         "set "
         "drive.kind = \"none\" or collision.restitution below 1");
   }
-  if (static_cast<double>(config.run.intervals) > config.run.collisions) {
+  // The steady state is reached, and calibrated, over some 1 / (1 - eps^2) collisions per disk.
+  if (config.collision.restitution > 0.999 && config.drive.kind != DriveKind::none) {
     throw InputError(
-        fmt::format("run.intervals = {} is too many for run.collisions = {}: an interval must be at least one "
-                    "collision per disk long; "
-                    "set run.intervals to at most {}",
-                    config.run.intervals, config.run.collisions, std::max(1.0, std::floor(config.run.collisions))));
+        fmt::format("collision.restitution = {} with driving takes too long to become steady (thousands of collisions "
+                    "per disk): set it to at most 0.999, or to 1 with drive.kind = \"none\"",
+                    config.collision.restitution));
+  }
+  if (2 * static_cast<double>(config.run.intervals) > config.run.collisions) {
+    throw InputError(fmt::format(
+        "run.intervals = {} is too many for run.collisions = {}: an interval must be at least two collisions per disk "
+        "long; set run.intervals to at most {}, or run.collisions to at least {}",
+        config.run.intervals, config.run.collisions, std::max(1.0, std::floor(config.run.collisions / 2)),
+        2 * config.run.intervals));
   }
   if (config.output.trajectory_frames == 1) {
     throw InputError(

@@ -258,8 +258,8 @@ const std::vector<Key>& config_table() {
                                          .range = {0, 1e12, true}}),
       key<&C::run, &C::Run::intervals>(
           {.name = "run.intervals",
-           .description = "Parts of the measured stretch whose averages give the standard errors; each is at least one "
-                          "collision per disk long.",
+           .description = "Parts of the measured stretch whose averages give the standard errors; each is at least two "
+                          "collisions per disk long.",
            .range = {1, 1e6}}),
       key<&C::run, &C::Run::threads>({.name = "run.threads",
                                       .description = "Threads; the results do not depend on it.",

@@ -53,7 +53,7 @@ Estimate passage_time(const IntervalSeries& series, double level) {
     for (std::size_t lag = 1; lag < series.time.size(); ++lag) {
       const double above = series.mean(lag, left_out), below = series.mean(lag - 1, left_out);
       if (!(above >= level)) continue;
-      if (!(series.time[lag - 1] > 0)) return nan;  // reached before the first lag
+      if (!(series.time[lag - 1] > 0)) return series.time[lag] * std::sqrt(level / above);  // still free flight
       const double fraction = portable_log(level / below) / portable_log(above / below);
       return series.time[lag - 1] * portable_exp(fraction * portable_log(series.time[lag] / series.time[lag - 1]));
     }

@@ -10,8 +10,9 @@ namespace sandglass {
 /// are in it. NaN with fewer than two lags in the range.
 Estimate power_law_exponent(const IntervalSeries& series, double t1, double t2);
 
-/// The earliest time at which the series reaches `level` from below, interpolated linearly in ln t, ln y; jackknife
-/// error. NaN when it never does (also when one of the jackknife curves does not: then the error is NaN).
+/// The earliest time at which the series reaches `level` from below, interpolated linearly in ln t, ln y (before the
+/// first lag: as free flight, y ~ t^2); jackknife error. NaN when it never does (also when one of the jackknife curves
+/// does not: then the error is NaN).
 Estimate passage_time(const IntervalSeries& series, double level);
 
 /// Smallest exponent over all windows [t, width * t] inside the series, and the middle (geometric) of that window. The

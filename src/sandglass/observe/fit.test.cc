@@ -62,7 +62,9 @@ TEST_CASE("passage time") {
   const auto series = series_of([](double t) { return 0.4 * std::sqrt(t); }, 10, 0, true, 3);
   CHECK(passage_time(series, 1).value == doctest::Approx(6.25).epsilon(1e-10));
   CHECK(std::isnan(passage_time(series, 100).value));
-  CHECK(std::isnan(passage_time(series, 1e-9).value));  // before the first lag
+  // Before the first lag: free flight, y ~ t^2.
+  CHECK(passage_time(series, 1e-9).value ==
+        doctest::Approx(series.time[1] * std::sqrt(1e-9 / series.mean(1))).epsilon(1e-10));
   // Common noise of 2 % in 10 intervals: dt / t = 2 * 0.02 / sqrt(10) = 1.26 %; a sample of one.
   const Estimate noisy = passage_time(series_of([](double t) { return 0.4 * std::sqrt(t); }, 10, 0.02, true, 4), 1);
   CHECK(std::fabs(noisy.value / 6.25 - 1) < 5 * 0.0126);

@@ -38,9 +38,17 @@ struct Window {
 /// The scratch run: counts beats, measures windows of them.
 class Scratch {
  public:
-  Scratch(State state, double beat) : population_(population_of(state)), beat_(beat), simulation_(std::move(state)) {}
+  Scratch(State state, double beat, const Progress& progress)
+      : population_(population_of(state)), beat_(beat), progress_(progress), simulation_(std::move(state)) {}
 
-  void run(std::uint64_t beats) { simulation_.run_until(static_cast<double>(beats_ += beats) * beat_); }
+  void set_progress(double fraction) { fraction_ = fraction; }
+
+  void run(std::uint64_t beats) {
+    for (std::uint64_t i = 0; i < beats; ++i) {
+      report_progress(progress_, "calibrating the drive", fraction_);  // also where the caller may stop it
+      simulation_.run_until(static_cast<double>(++beats_) * beat_);
+    }
+  }
 
   Window measure(std::uint64_t beats) {
     const std::uint64_t before = simulation_.tally().collisions();
@@ -65,6 +73,8 @@ class Scratch {
  private:
   Population population_;
   double beat_;
+  const Progress& progress_;
+  double fraction_ = 0;
   std::uint64_t beats_ = 0;
   Simulation simulation_;
   Frame frame_;
@@ -82,11 +92,11 @@ Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& 
   const auto settling = static_cast<std::uint64_t>(std::ceil(5 * relaxation));
 
   Calibration result{.frequency = start.drive.frequency, .amplitude = start.drive.amplitude};
-  Scratch scratch(std::move(start), goal.beat);
+  Scratch scratch(std::move(start), goal.beat, progress);
   Average frequencies, amplitudes;
   for (int window = 0; amplitudes.count < most_windows; ++window) {
     const bool rough = window < rough_windows;
-    report_progress(progress, "calibrating the drive", window / static_cast<double>(rough_windows + most_windows));
+    scratch.set_progress(window / static_cast<double>(rough_windows + most_windows));
     // Ageing happens once, when the temperature is about right.
     if (window == rough_windows) scratch.run(static_cast<std::uint64_t>(goal.settle));
     scratch.run(settling);

@@ -12,6 +12,7 @@
 
 #include "sandglass/core/errors.h"
 #include "sandglass/dynamics/simulation.h"
+#include "sandglass/dynamics/start_check.h"
 #include "sandglass/io/atomic_file.h"
 #include "sandglass/io/checkpoint.h"
 #include "sandglass/io/observables.h"
@@ -25,6 +26,9 @@ namespace sandglass {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// Thrown out of preparation and calibration when the run is asked to stop: nothing is lost, they start anew.
+struct Stopped {};
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -77,7 +81,7 @@ class PointRun {
   Summary finish();
 
  private:
-  void calibrate_drive(State& state);
+  void calibrate_drive(State& state, const Progress& progress);
   void equilibrate();
   void begin_measuring();
   bool measure();
@@ -117,11 +121,17 @@ class PointRun {
 };
 
 void PointRun::start() {
-  State state = make_start(config_, monitor_.progress);  // may refuse a start file: before the folder is touched
+  // What may still be refused is refused before the folder is touched.
+  const Progress progress = [this](std::string_view stage, double fraction) {
+    if (stop_requested()) throw Stopped{};
+    report_progress(monitor_.progress, stage, fraction);
+  };
+  State state = make_start(config_, progress);
+  check_start(state);
   folder_.begin();
   write_whole(folder_.config(), config_to_toml(config_));
   log("initial state prepared");
-  if (state.drive.kind != DriveKind::none) calibrate_drive(state);
+  if (state.drive.kind != DriveKind::none) calibrate_drive(state, progress);
   if (config_.output.trajectory_frames > 0)
     create_trajectory(folder_.trajectory(), state, config_.output.trajectory_frames);
   frames_.emplace(folder_.trajectory(), config_.output.trajectory_frames, state.box_length);
@@ -129,11 +139,11 @@ void PointRun::start() {
   simulation_.emplace(std::move(state));
 }
 
-void PointRun::calibrate_drive(State& state) {
+void PointRun::calibrate_drive(State& state, const Progress& progress) {
   CalibrationGoal goal{.temperature = config_.drive.temperature, .frequency = config_.drive.frequency, .beat = beat_};
   // Above 0.78 the collision rate ages for long: calibrate an aged copy, or T would drift from the start.
   if (config_.system.packing_fraction > 0.78) goal.settle = config_.run.equilibrate;
-  facts_.calibration = calibrate(state, goal, monitor_.progress);
+  facts_.calibration = calibrate(state, goal, progress);
   state.drive.frequency = facts_.calibration.frequency;
   state.drive.amplitude = facts_.calibration.amplitude;
   start_kick_clocks(state);
@@ -152,6 +162,10 @@ void PointRun::resume() {
   Checkpoint checkpoint = read_checkpoint(folder_.checkpoint(), groups);
   measurement_->finish_restore();
   if (measuring_ == 1) frames_->begin(measurement_->plan());
+  if (config_.output.trajectory_frames > 0 && !std::filesystem::exists(folder_.trajectory())) {
+    create_trajectory(folder_.trajectory(), probe, config_.output.trajectory_frames);
+    log("trajectory.h5 was gone: made again, without the frames before this point");
+  }
   earlier_wall_seconds_ = facts_.wall_seconds;
   simulation_.emplace(std::move(checkpoint.state));
   log(fmt::format("resumed at beat {}{}", beats_,
@@ -203,15 +217,16 @@ void PointRun::begin_measuring() {
     rate =
         (collisions_per_disk() - marks_.early_collisions) / (static_cast<double>(beats_ - marks_.early_beats) * beat_);
   facts_.equilibration_rate = rate;
-  // The stretch is whole beats, however it is cut into intervals: these change what is measured, not the trajectory. An
-  // interval holds at least two mean free times, or there would be nothing to correlate.
-  const auto intervals = static_cast<double>(config_.run.intervals);
-  const double collisions = std::max(config_.run.collisions, 2 * intervals);
-  measured_beats_ = static_cast<std::uint64_t>(std::ceil(std::max(collisions / (rate * beat_), 2 * intervals)));
+  // The stretch is whole beats, however it is cut into intervals: these change what is measured, not the trajectory.
+  measured_beats_ = static_cast<std::uint64_t>(std::ceil(config_.run.collisions / (rate * beat_)));
   first_beat_ = beats_;
-  const MeasurementPlan plan = plan_measurement(
-      static_cast<double>(first_beat_) * beat_, static_cast<double>(measured_beats_) * beat_ / intervals,
-      config_.run.intervals, 1 / rate, config_.observe.lags_per_decade, config_.observe.wavenumbers);
+  const double start = static_cast<double>(first_beat_) * beat_;
+  const double end = static_cast<double>(first_beat_ + measured_beats_) * beat_;
+  const auto intervals = static_cast<double>(config_.run.intervals);
+  double interval = (end - start) / intervals;
+  while (start + intervals * interval > end) interval = std::nextafter(interval, 0.0);  // no sample after the last beat
+  const MeasurementPlan plan = plan_measurement(start, interval, config_.run.intervals, 1 / rate,
+                                                config_.observe.lags_per_decade, config_.observe.wavenumbers);
   measurement_->begin(plan, simulation_->tally());
   frames_->begin(plan);
   facts_.start_energy = kinetic_energy(simulation_->state());
@@ -237,11 +252,7 @@ bool PointRun::measure() {
 void PointRun::advance_one_beat() {
   const auto start = Clock::now();
   ++beats_;
-  const double end = static_cast<double>(beats_) * beat_;
-  measurement_->run_until(*simulation_, end, *frames_);
-  // Rounding may place the end of the stretch just after its last beat.
-  if (measuring_ == 1 && beats_ - first_beat_ == measured_beats_)
-    measurement_->run_until(*simulation_, std::max(end, measurement_->plan().end()), *frames_);
+  measurement_->run_until(*simulation_, static_cast<double>(beats_) * beat_, *frames_);
   engine_seconds_ += seconds_since(start);
 }
 
@@ -327,7 +338,11 @@ RunResult run_point(const Config& config, RunFolder& folder, bool resume, const 
   if (held && has_checkpoint(folder.checkpoint()))
     run.resume();
   else
-    run.start();
+    try {
+      run.start();
+    } catch (const Stopped&) {
+      return {RunOutcome::stopped, {}};
+    }
   if (!run.go()) return {RunOutcome::stopped, {}};
   return {RunOutcome::finished, run.finish()};
 }

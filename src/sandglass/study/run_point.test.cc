@@ -6,6 +6,8 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <string_view>
 
 #include "sandglass/core/errors.h"
 
@@ -70,12 +72,28 @@ TEST_CASE("the sampling plan does not change the trajectory, the seed does") {
   const Scratch scratch;
   const std::string hash = run(tiny(), scratch / "a").state_hash;
   Config other = tiny();
-  other.run.intervals = 9;
   other.observe.wavenumbers = {2.0};
   other.output.trajectory_frames = 0;
-  CHECK(run(other, scratch / "b").state_hash == hash);
   other.run.seed = 2;
-  CHECK(run(other, scratch / "c").state_hash != hash);
+  CHECK(run(other, scratch / "b").state_hash != hash);
+  other.run.seed = 1;
+  for (const std::uint64_t intervals : {1, 2, 3, 7, 9, 10, 11, 13, 23, 49}) {
+    other.run.intervals = intervals;
+    CHECK(run(other, scratch / std::to_string(intervals).c_str()).state_hash == hash);
+  }
+}
+
+TEST_CASE("a run asked to stop before it runs leaves nothing that hinders a start") {
+  const Scratch scratch;
+  for (const char* when : {"inserting", "calibrating"}) {
+    RunFolder folder = RunFolder::open(scratch / "a", FolderMode::resume);
+    bool now = false;
+    const RunMonitor monitor{.progress = [&](std::string_view stage, double) { now |= stage.starts_with(when); },
+                             .stop_requested = [&] { return now; }};
+    CHECK(run_point(tiny(), folder, true, monitor).outcome == RunOutcome::stopped);
+  }
+  RunFolder folder = RunFolder::open(scratch / "a", FolderMode::resume);
+  CHECK(run_point(tiny(), folder, true).summary.state_hash == run(tiny(), scratch / "b").state_hash);
 }
 
 TEST_CASE("a run stopped anywhere and resumed ends in the same bits of state, observables and trajectory") {
@@ -88,8 +106,11 @@ TEST_CASE("a run stopped anywhere and resumed ends in the same bits of state, ob
     for (int beats = 1;; beats = beats * 3 / 2 + 1) {
       RunFolder folder = RunFolder::open(scratch / "cut", FolderMode::resume);
       int left = beats;
-      const RunResult result =
-          run_point(config, folder, true, {.progress = {}, .stop_requested = [&] { return left-- <= 0; }});
+      bool running = false;  // preparation and calibration, when stopped, start anew: not what is tested here
+      const RunMonitor monitor{
+          .progress = [&](std::string_view stage, double) { running |= !stage.starts_with("calibrating"); },
+          .stop_requested = [&] { return running && left-- <= 0; }};
+      const RunResult result = run_point(config, folder, true, monitor);
       if (result.outcome == RunOutcome::stopped) {
         ++stops;
         continue;

@@ -1,7 +1,11 @@
 #include "sandglass/study/start.h"
 
-#include <cmath>
+#include <fmt/format.h>
 
+#include <cmath>
+#include <filesystem>
+
+#include "sandglass/core/errors.h"
 #include "sandglass/dynamics/epoch.h"
 #include "sandglass/io/state_file.h"
 #include "sandglass/prepare/prepare.h"
@@ -28,6 +32,12 @@ State prepare(const Config& config, const Progress& progress) {
     case PrepareMethod::file:
       break;
   }
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(config.prepare.file, error))
+    throw InputError(
+        fmt::format("prepare.file = \"{}\" is not there or not a file: check the path (in a file it is relative to the "
+                    "folder of that file)",
+                    config.prepare.file));
   return adapt_state(read_start_file(config.prepare.file), small_count, big_count, mixture, eta, seed);
 }
 

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "sandglass/core/errors.h"
+
 using namespace sandglass;
 
 TEST_CASE("a start has the wanted disks, density, temperature, law and clocks") {
@@ -28,4 +30,13 @@ TEST_CASE("a start has the wanted disks, density, temperature, law and clocks") 
   const double loss = (1 - 0.49) * 2 / 2 / beat_of(config);
   CHECK(gain == doctest::Approx(loss).epsilon(1e-12));
   for (const Disk& disk : state.disks) CHECK(std::isfinite(disk.next_kick));
+}
+
+TEST_CASE("a start file that is not there is refused by name") {
+  Config config;
+  config.prepare.method = PrepareMethod::file;
+  for (const char* file : {"/absent/start.h5", "/tmp"}) {
+    config.prepare.file = file;
+    CHECK_THROWS_WITH_AS(make_start(config), doctest::Contains(file), InputError);
+  }
 }
