@@ -1,33 +1,17 @@
 #include "sandglass/study/run_point.h"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <string_view>
 
 #include "sandglass/core/errors.h"
+#include "sandglass/io/temporary_folder.h"
 
 using namespace sandglass;
 
 namespace {
-
-/// A folder of its own under the system's temporary one, removed at the end.
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (std::filesystem::temp_directory_path() / "sandglass-run-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Scratch() { std::filesystem::remove_all(path_); }
-  std::filesystem::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 Config tiny() {
   Config config;
@@ -47,15 +31,10 @@ Summary run(const Config& config, const std::filesystem::path& path) {
   return run_point(config, folder, false).summary;
 }
 
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 }  // namespace
 
 TEST_CASE("a run leaves all its files and a summary that adds up") {
-  const Scratch scratch;
+  const TemporaryFolder scratch;
   const Summary s = run(tiny(), scratch / "a");
   for (const char* name :
        {"config.toml", "summary.json", "observables.h5", "trajectory.h5", "checkpoint.h5", "run.log"})
@@ -69,7 +48,7 @@ TEST_CASE("a run leaves all its files and a summary that adds up") {
 }
 
 TEST_CASE("the sampling plan does not change the trajectory, the seed does") {
-  const Scratch scratch;
+  const TemporaryFolder scratch;
   const std::string hash = run(tiny(), scratch / "a").state_hash;
   Config other = tiny();
   other.observe.wavenumbers = {2.0};
@@ -79,12 +58,12 @@ TEST_CASE("the sampling plan does not change the trajectory, the seed does") {
   other.run.seed = 1;
   for (const std::uint64_t intervals : {1, 2, 3, 7, 9, 10, 11, 13, 23, 49}) {
     other.run.intervals = intervals;
-    CHECK(run(other, scratch / std::to_string(intervals).c_str()).state_hash == hash);
+    CHECK(run(other, scratch / std::to_string(intervals)).state_hash == hash);
   }
 }
 
 TEST_CASE("a run asked to stop before it runs leaves nothing that hinders a start") {
-  const Scratch scratch;
+  const TemporaryFolder scratch;
   for (const char* when : {"inserting", "calibrating"}) {
     RunFolder folder = RunFolder::open(scratch / "a", FolderMode::resume);
     bool now = false;
@@ -98,7 +77,7 @@ TEST_CASE("a run asked to stop before it runs leaves nothing that hinders a star
 
 TEST_CASE("a run stopped anywhere and resumed ends in the same bits of state, observables and trajectory") {
   for (const DriveKind kind : {DriveKind::pair, DriveKind::single, DriveKind::none}) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     Config config = tiny();
     config.drive.kind = kind;
     const Summary whole = run(config, scratch / "whole");
@@ -120,8 +99,8 @@ TEST_CASE("a run stopped anywhere and resumed ends in the same bits of state, ob
       break;
     }
     CHECK(stops > 3);
-    CHECK(bytes_of(scratch / "cut" / "observables.h5") == bytes_of(scratch / "whole" / "observables.h5"));
-    CHECK(bytes_of(scratch / "cut" / "trajectory.h5") == bytes_of(scratch / "whole" / "trajectory.h5"));
+    CHECK(slurp(scratch / "cut" / "observables.h5") == slurp(scratch / "whole" / "observables.h5"));
+    CHECK(slurp(scratch / "cut" / "trajectory.h5") == slurp(scratch / "whole" / "trajectory.h5"));
 
     RunFolder folder = RunFolder::open(scratch / "cut", FolderMode::resume);
     CHECK(run_point(config, folder, true).outcome == RunOutcome::already_finished);
@@ -131,7 +110,7 @@ TEST_CASE("a run stopped anywhere and resumed ends in the same bits of state, ob
 }
 
 TEST_CASE("an aged state of another run can be the start, at another density and restitution") {
-  const Scratch scratch;
+  const TemporaryFolder scratch;
   run(tiny(), scratch / "a");
   Config next = tiny();
   next.prepare.method = PrepareMethod::file;

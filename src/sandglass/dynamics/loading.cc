@@ -1,0 +1,114 @@
+// From a State into the engine's tables, and back.
+#include <cmath>
+
+#include "sandglass/dynamics/isa_engine.h"
+
+namespace sandglass {
+inline namespace SANDGLASS_ISA {
+
+OverlappingPair IsaEngine::load(const std::uint32_t* order) {
+  size_ = state_.disks.size();
+  until_stall_check_ = 1;
+  progress_time_ = -never;
+  const Disk* const disks = state_.disks.data();
+  if (records_.size() != size_) {
+    records_ = Array<Record>(size_);
+    cold_ = Array<ColdRecord>(size_);
+  }
+  const double skin = default_skin();
+  const double widest = 2 * largest_radius() + skin;
+  neighbours_ = Neighbours(size_, box_, skin, tuning_.cell_size > 0 ? tuning_.cell_size : widest);
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    const Disk& disk = disks[order[i]];
+    records_[i] = {disk.x,  disk.y,        disk.vx,      disk.vy, disk.time, never, state_.mixture.radius[disk.species],
+                   no_disk, Next::contact, disk.species, 0};
+    Record now = records_[i];
+    std::int32_t image_x = 0, image_y = 0;
+    advance(now, image_x, image_y, state_.now, box_);
+    cold_[i] = {now.x, now.y,  disk.last_contact, disk.next_kick, disk.kick_count, disk.image_x, disk.image_y, order[i],
+                0,     no_disk};
+  }
+  OverlappingPair deepest;
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    neighbours_.visit_near(cold_[i].centre_x, cold_[i].centre_y, widest, &cold_[0], [&](std::uint32_t k) {
+      if (!neighbours_.listed(&records_[0], &cold_[0], i, k)) return;
+      neighbours_.add(i, k, &records_[0]);
+      neighbours_.add(k, i, &records_[0]);
+      const double contact = records_[i].radius + records_[k].radius;
+      const double gap = surface_gap(records_[i], records_[k], contact, state_.now, box_);
+      if (gap < -1e-9 * contact && -gap > deepest.depth) deepest = {cold_[k].id, cold_[i].id, -gap};
+    });
+    neighbours_.place(i, &cold_[0]);
+  }
+
+  // First predictions into a calendar of arbitrary scale, only to learn how far ahead events are.
+  calendar_ = Calendar(state_.now, state_.epoch_length, 0);
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    predict(i);
+    predict_pending();
+  }
+  const double events = tuning_.bucket_events > 0 ? tuning_.bucket_events : 3;
+  calendar_ = Calendar(state_.now, events * mean_lead() / static_cast<double>(size_), size_);
+  for (std::uint32_t i = 0; i < size_; ++i)
+    if (records_[i].next_time < never) calendar_.push(records_[i].next_time, i);
+  return deepest;
+}
+
+/// Width of the lists beyond contact: a circle of that range holds about eight centres at the given density.
+double IsaEngine::default_skin() const {
+  const double room = box_.length / 2 - 2 * largest_radius();  // wider, and nearest images would no longer be unique
+  if (tuning_.skin > 0) return std::fmin(tuning_.skin, room);
+  const double area_per_disk = box_.length * box_.length / static_cast<double>(size_);
+  const double contact = state_.mixture.radius[small] + state_.mixture.radius[big];
+  const double skin = std::sqrt(8 * area_per_disk / 3.14159) - contact;
+  return std::fmin(std::fmax(skin, 0.2 * contact), room);
+}
+
+/// About the mean time from now to a disk's next event, from the median over a sample of disks: the median of an
+/// exponential distribution is ln 2 of its mean.
+double IsaEngine::mean_lead() const {
+  const std::size_t step = size_ / 1024 + 1;
+  double low = 0, high = state_.epoch_length;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = (low + high) / 2;
+    std::size_t below = 0, all = 0;
+    for (std::size_t slot = 0; slot < size_; slot += step, ++all)
+      below += records_[slot].next_time - state_.now < middle;
+    (2 * below < all ? low : high) = middle;
+  }
+  return std::fmax(high, 1e-9 * state_.epoch_length) / 0.69;
+}
+
+void IsaEngine::store(Disk* disks) const {
+  for (std::size_t i = 0; i < size_; ++i) {
+    const Record& record = records_[i];
+    const ColdRecord& cold = cold_[i];
+    Disk& disk = disks[cold.id];
+    disk.x = record.x;
+    disk.y = record.y;
+    disk.vx = record.vx;
+    disk.vy = record.vy;
+    disk.time = record.time;
+    disk.last_contact = cold.last_contact;
+    disk.next_kick = cold.next_kick;
+    disk.kick_count = cold.kick_count;
+    disk.image_x = cold.image_x;
+    disk.image_y = cold.image_y;
+    disk.species = record.species;
+  }
+}
+
+void IsaEngine::make_frame(double* x, double* y, double* vx, double* vy) const {
+  for (std::size_t i = 0; i < size_; ++i) {
+    const Record& record = records_[i];
+    const ColdRecord& cold = cold_[i];
+    const double flight = state_.now - record.time;
+    x[cold.id] = record.x + record.vx * flight + cold.image_x * box_.length;
+    y[cold.id] = record.y + record.vy * flight + cold.image_y * box_.length;
+    vx[cold.id] = record.vx;
+    vy[cold.id] = record.vy;
+  }
+}
+
+}  // namespace SANDGLASS_ISA
+}  // namespace sandglass
