@@ -111,7 +111,7 @@ Summary summarise(const Config& config, const State& end, const Measurement& mea
   summary.version = version;
   summary.seed = end.seed;
   summary.particles = end.size();
-  summary.packing_fraction = packing_fraction(end);
+  summary.packing_fraction = config.system.packing_fraction;  // that of the state to rounding
   summary.restitution = end.collision.restitution;
   summary.box_length = end.box_length;
   summary.time = measurement.plan().end() - measurement.plan().start;
