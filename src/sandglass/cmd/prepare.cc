@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -31,14 +32,16 @@ int prepare_command(int argc, char** argv) {
   const Config config = read_config(config_file, assignments);
   if (std::filesystem::exists(output))
     throw InputError(fmt::format("{} exists already and is not overwritten: remove it or choose another name", output));
+  const auto began = std::chrono::steady_clock::now();
   State state;
   {
     ProgressBar bar;
     state = make_start(config, [&](std::string_view stage, double fraction) { bar.show(stage, fraction); });
   }
   write_state(output, state);
-  fmt::print("{} disks at packing fraction {:.6g} in a box of side {:.6g}: {}\n", state.size(), packing_fraction(state),
-             state.box_length, output);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  fmt::print("{} disks at packing fraction {:.6g} in a box of side {:.6g}, prepared in {}: {}\n", state.size(),
+             packing_fraction(state), state.box_length, duration_text(seconds), output);
   return static_cast<int>(ExitCode::done);
 }
 
