@@ -107,13 +107,20 @@ struct Impact {
   double dissipated;  ///< energy lost
 };
 
-/// The masses of two disks as a collision needs them.
+/// The masses of two disks as a collision needs them. The reduced mass 1 / (1/m_a + 1/m_b) is kept to twice the digits
+/// of a double: its rounding error would be the same in every collision of two species, and over 10^7 collisions per
+/// disk elastic disks would gain or lose energy steadily instead of by a random walk of roundings.
 struct PairMasses {
-  double reduced, inverse_a, inverse_b;
+  double reduced, reduced_low, inverse_a, inverse_b;
 
   PairMasses() = default;
-  PairMasses(double mass_a, double mass_b)
-      : reduced(mass_a * mass_b / (mass_a + mass_b)), inverse_a(1 / mass_a), inverse_b(1 / mass_b) {}
+  PairMasses(double mass_a, double mass_b) : inverse_a(1 / mass_a), inverse_b(1 / mass_b) {
+    const double larger = inverse_a > inverse_b ? inverse_a : inverse_b;
+    const double sum = inverse_a + inverse_b,
+                 sum_low = (inverse_a > inverse_b ? inverse_b : inverse_a) - (sum - larger);
+    reduced = 1 / sum;
+    reduced_low = (std::fma(-reduced, sum, 1.0) - reduced * sum_low) / sum;
+  }
 };
 
 /// Collides a and b, both already advanced to the time of contact. With n the unit vector from a to b and g = v_a -
@@ -132,7 +139,7 @@ template <class A, class B>
     b.vy += py * masses.inverse_b;
   };
   const double rv = approach();
-  const double virial = -masses.reduced * (1 + restitution) * rv;
+  const double virial = -(1 + restitution) * std::fma(masses.reduced, rv, masses.reduced_low * rv);
   push(virial / rr);
   if (approach() < 0) [[unlikely]] {
     // In a grazing contact rounding may leave the pair approaching still, and it would collide again in place for
