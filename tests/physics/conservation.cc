@@ -9,18 +9,6 @@
 using namespace sandglass;
 using namespace sandglass::physics;
 
-namespace {
-
-/// Kinetic energy of all disks, the centre of mass included.
-double kinetic_energy(const State& state) {
-  ExactSum energy;
-  for (const Disk& disk : state.disks)
-    energy.add(0.5 * state.mixture.mass[disk.species] * (disk.vx * disk.vx + disk.vy * disk.vy));
-  return energy.value();
-}
-
-}  // namespace
-
 TEST_CASE("elastic undriven disks keep their energy to rounding") {
   for (const double eta : {0.05, 0.6}) {
     State state = start(1.43, 1000, eta, 31);

@@ -84,6 +84,13 @@ double minimum_box_length(const Mixture& mixture) {
   return 8 * (mixture.radius[small] > mixture.radius[big] ? mixture.radius[small] : mixture.radius[big]);
 }
 
+double kinetic_energy(const State& state) {
+  ExactSum energy;
+  for (const Disk& disk : state.disks)
+    energy.add(0.5 * state.mixture.mass[disk.species] * (disk.vx * disk.vx + disk.vy * disk.vy));
+  return energy.value();
+}
+
 std::array<double, 2> total_momentum(const State& state) {
   ExactSum px, py;
   for (const Disk& disk : state.disks) {

@@ -106,6 +106,9 @@ struct Temperatures {
 };
 Temperatures temperatures(const State& state);
 
+/// Kinetic energy of all disks, that of the centre of mass included.
+double kinetic_energy(const State& state);
+
 /// Total momentum [x, y].
 std::array<double, 2> total_momentum(const State& state);
 

@@ -67,11 +67,4 @@ inline double deepest_overlap(const State& state) {
   return deepest;
 }
 
-inline double kinetic_energy(const State& state) {
-  ExactSum sum;
-  for (const Disk& disk : state.disks)
-    sum.add(0.5 * state.mixture.mass[disk.species] * (disk.vx * disk.vx + disk.vy * disk.vy));
-  return sum.value();
-}
-
 }  // namespace sandglass

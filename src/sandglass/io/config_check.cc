@@ -4,11 +4,11 @@
 
 #include "sandglass/core/errors.h"
 #include "sandglass/io/config.h"
+#include "sandglass/prepare/insert.h"
 
 namespace sandglass {
 namespace {
 
-constexpr double insert_limit = 0.45;  // random insertion hardly ends above (random sequential addition jams at 0.547)
 constexpr double quench_least = 0.01;
 
 std::uint64_t big_count(const Config::System& system, std::uint64_t particles) {
@@ -26,10 +26,13 @@ Mixture mixture_of(const Config::System& system) {
   return {.radius = {1, ratio}, .mass = {1, ratio * ratio}};
 }
 
-bool fits(const Config::System& system, std::uint64_t particles) {
-  const Mixture mixture = mixture_of(system);
+double box_length(const Config::System& system, std::uint64_t particles) {
   const std::uint64_t big = big_count(system, particles);
-  return box_length_for(mixture, particles - big, big, system.packing_fraction) >= minimum_box_length(mixture);
+  return box_length_for(mixture_of(system), particles - big, big, system.packing_fraction);
+}
+
+bool fits(const Config::System& system, std::uint64_t particles) {
+  return box_length(system, particles) >= minimum_box_length(mixture_of(system));
 }
 
 /// The smallest number of disks that both divides into the species and fills a box of the least size.
@@ -89,13 +92,8 @@ void check_prepare(const Config& config) {
 /// Partners are looked for among nearest images only.
 void check_reach(const Config& config) {
   if (config.drive.kind != DriveKind::pair || config.drive.partner != PartnerRule::within) return;
-  const double ratio = config.system.size_ratio;
-  const Mixture mixture{{1, ratio}, {1, ratio * ratio}};
-  const auto disks = static_cast<double>(config.system.particles);
-  const auto big_count = static_cast<std::size_t>(std::llround(disks * config.system.big_fraction));
-  const double length =
-      box_length_for(mixture, config.system.particles - big_count, big_count, config.system.packing_fraction);
-  const double most = length / (4 * std::max(1.0, ratio));
+  const double length = box_length(config.system, config.system.particles);
+  const double most = length / (4 * std::max(1.0, config.system.size_ratio));
   if (config.drive.reach <= most) return;
   throw InputError(
       fmt::format("drive.reach = {} contact distances is more than half the box of side {:.4g}: set it to at most "

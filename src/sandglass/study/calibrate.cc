@@ -103,7 +103,6 @@ Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& 
     const auto [temperature, rate] =
         scratch.measure(static_cast<std::uint64_t>(std::ceil(rough ? length / 2 : length)));
     ++result.windows;
-    result.temperature = temperature;
     result.collision_rate = rate;
 
     const double ratio = goal.temperature / temperature;

@@ -19,7 +19,6 @@ struct CalibrationGoal {
 /// The values to freeze, and how well they are known.
 struct Calibration {
   double frequency = 0, amplitude = 0;
-  double temperature = 0;        ///< mean over the last window
   double temperature_error = 0;  ///< relative standard error of T that the frozen values will give, from their scatter
   double collision_rate = 0;     ///< per disk and time, over the last window
   std::uint64_t windows = 0;

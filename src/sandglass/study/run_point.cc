@@ -32,13 +32,6 @@ struct Stopped {};
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-double kinetic_energy(const State& state) {
-  ExactSum sum;
-  for (const Disk& disk : state.disks)
-    sum.add(0.5 * state.mixture.mass[disk.species] * (disk.vx * disk.vx + disk.vy * disk.vy));
-  return sum.value();
-}
-
 /// An Observer that stores the frames of the trajectory, evenly spaced over the measured stretch, both ends included.
 class FrameWriter {
  public:
@@ -216,7 +209,6 @@ void PointRun::begin_measuring() {
   if (counts_collisions() && marks_.early_beats > 1)
     rate =
         (collisions_per_disk() - marks_.early_collisions) / (static_cast<double>(beats_ - marks_.early_beats) * beat_);
-  facts_.equilibration_rate = rate;
   // The stretch is whole beats, however it is cut into intervals: these change what is measured, not the trajectory.
   measured_beats_ = static_cast<std::uint64_t>(std::ceil(config_.run.collisions / (rate * beat_)));
   first_beat_ = beats_;
@@ -289,12 +281,10 @@ FieldGroup PointRun::own_fields() {
            {"early_collisions", &marks_.early_collisions},
            {"late_collisions", &marks_.late_collisions},
            {"start_energy", &facts_.start_energy},
-           {"equilibration_rate", &facts_.equilibration_rate},
            {"wall_seconds", &facts_.wall_seconds},
            {"engine_seconds", &engine_seconds_},
            {"calibration_frequency", &c.frequency},
            {"calibration_amplitude", &c.amplitude},
-           {"calibration_temperature", &c.temperature},
            {"calibration_temperature_error", &c.temperature_error},
            {"calibration_collision_rate", &c.collision_rate},
            {"calibration_windows", &c.windows},

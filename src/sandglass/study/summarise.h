@@ -13,7 +13,6 @@ namespace sandglass {
 struct RunFacts {
   Calibration calibration;
   double start_energy = 0, end_energy = 0;  ///< kinetic energy of all disks at both ends of the measured stretch
-  double equilibration_rate = 0;            ///< collisions per disk and time by which the measured stretch was planned
   double wall_seconds = 0;
   double collisions_per_second = 0;
 };
