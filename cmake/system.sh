@@ -1,9 +1,10 @@
 # What ./quickstart and ./check share: the packages of the system, the build. Sourced by both, not run by itself.
 
-# The one list of what the project needs from Debian. Building needs the first, running the tests the second as well.
+# The one list of what the project needs from Debian. Building needs the first, running tests and micro-benchmarks the
+# second as well.
 build_packages=(g++ cmake ninja-build libcli11-dev libfmt-dev libtomlplusplus-dev nlohmann-json3-dev libhdf5-dev
                 librandom123-dev doctest-dev librapidcheck-dev)
-test_packages=(clang-format-14 chromium fonts-dejavu-core python3 python3-numpy python3-h5py)
+test_packages=(clang-format-14 libbenchmark-dev chromium fonts-dejavu-core python3 python3-numpy python3-h5py)
 
 say() { printf '\n== %s\n' "$*"; }
 fail() { printf 'error: %s\n' "$*" >&2; exit 1; }

@@ -54,17 +54,23 @@ class Array {
 template <class T>
 class GrowingArray {
  public:
+  GrowingArray() = default;
+  explicit GrowingArray(std::size_t size) : storage_(size), size_(size) {}
+
   [[gnu::always_inline]] void push_back(const T& value) {
     if (size_ == storage_.size()) [[unlikely]]
       grow();
     storage_[size_++] = value;
   }
   void pop_back() { --size_; }
+  T pop() { return storage_[--size_]; }
+  void shrink(std::size_t size) { size_ = size; }
   void clear() { size_ = 0; }
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::size_t capacity_bytes() const { return storage_.bytes(); }
   [[gnu::always_inline]] T& operator[](std::size_t i) { return storage_[i]; }
+  [[gnu::always_inline]] const T& operator[](std::size_t i) const { return storage_[i]; }
   T& back() { return storage_[size_ - 1]; }
   T* begin() { return storage_.begin(); }
   T* end() { return storage_.begin() + size_; }

@@ -2,42 +2,45 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "sandglass/dynamics/array.h"
 #include "sandglass/dynamics/record.h"
+#include "sandglass/dynamics/simd.h"
 
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
-/// A lazy two-level bucket calendar. Time is cut into fine buckets of a few events, and into windows of 2^k fine
-/// buckets; a ring of 2^k windows lies ahead. An entry of a later window is only appended to that window's chain of
-/// chunks; when a window opens, its entries are dealt into fine buckets; when a fine bucket opens, its few entries are
-/// searched for the earliest. Nothing is moved or removed when a prediction changes: an entry counts only while it
-/// still states its disk's next_time.
+/// A lazy two-level bucket calendar. Time is cut into fine buckets of a few events, and into windows of many fine
+/// buckets; a ring of windows lies ahead. An entry of a later window is only appended to that window's chain of
+/// chunks; when a window opens, its entries are dealt into fine buckets; the open bucket is searched for its earliest
+/// entry. Nothing is moved or removed when a prediction changes: an entry counts only while it still states its disk's
+/// next_time.
 class Calendar {
  public:
   /// Fine buckets are `bucket_width` long, counted from time `start`; about `size` entries live at a time.
   Calendar(double start, double bucket_width, std::size_t size) : start_(start), inverse_width_(1 / bucket_width) {
-    while (bits_ < 12 && (std::size_t{1} << (2 * bits_)) < size) ++bits_;
-    mask_ = (std::uint64_t{1} << bits_) - 1;
-    heads_ = Array<std::uint32_t>(mask_ + 1);
-    chains_ = Array<std::uint32_t>(mask_ + 2);
-    for (std::uint32_t& head : heads_) head = none;
+    while (fine_bits_ < 8 && (std::size_t{1} << 2 * fine_bits_) < size) ++fine_bits_;
+    unsigned ring_bits = fine_bits_;
+    while (ring_bits < 16 && (std::size_t{1} << (fine_bits_ + ring_bits)) < size) ++ring_bits;
+    fine_mask_ = (std::uint64_t{1} << fine_bits_) - 1;
+    ring_mask_ = (std::uint64_t{1} << ring_bits) - 1;
+    lines_ = GrowingArray<Line>(fine_mask_ + 1);
+    for (Line& line : lines_) line = Line();
+    chains_ = Array<std::uint32_t>(ring_mask_ + 2);
     for (std::uint32_t& chain : chains_) chain = none;
   }
   Calendar() = default;
 
   [[gnu::always_inline]] void push(double time, std::uint32_t slot) {
-    const std::uint64_t bucket = bucket_of(time);
-    if (bucket <= bucket_) {
-      open_.push_back({time, slot});
-      return;
-    }
-    const std::uint64_t windows_ahead = (bucket >> bits_) - (bucket_ >> bits_);
+    std::int64_t bucket = bucket_of(time);
+    if (bucket < bucket_) bucket = bucket_;  // at a time already passed by rounding
+    const std::int64_t windows_ahead = (bucket >> fine_bits_) - (bucket_ >> fine_bits_);
     if (windows_ahead == 0)
-      link(bucket & mask_, time, slot);
+      enter(bucket, time, slot, true);
     else
-      append(windows_ahead <= mask_ ? (bucket >> bits_) & mask_ : beyond(), time, slot);
+      append(windows_ahead <= static_cast<std::int64_t>(ring_mask_) ? (bucket >> fine_bits_) & ring_mask_ : beyond(),
+             time, slot);
   }
 
   /// Takes out and returns the slot whose event is the earliest and not after `limit`; no_disk if there is none.
@@ -45,76 +48,134 @@ class Calendar {
   template <class Before>
   [[gnu::always_inline]] std::uint32_t pop(const Record* records, double limit, Before&& before) {
     for (;;) {
-      while (!open_.empty()) {
-        std::size_t best = 0;
-        for (std::size_t i = 1; i < open_.size(); ++i) {
-          if (open_[i].time < open_[best].time) {
-            best = i;
-          } else if (open_[i].time == open_[best].time) [[unlikely]] {
-            if (!valid(records, open_[best]) || (valid(records, open_[i]) && before(open_[i].slot, open_[best].slot)))
-              best = i;
-          }
+      Line& line = lines_[bucket_ & fine_mask_];
+      const auto [soonest, lanes] = smallest_of_8(line.time);
+      if (soonest == nothing || line.more != 0 || (lanes & (lanes - 1)) != 0) [[unlikely]] {
+        // the bucket is empty, or has several lines, or two events at the same time
+        if (line.more == 0 && soonest == nothing) {
+          line.count = 0;
+          if (bucket_ >= bucket_of(limit)) return no_disk;
+          open_next_bucket(records);
+          continue;
         }
-        const Entry entry = open_[best];
-        if (entry.time > limit) return no_disk;
-        open_[best] = open_.back();
-        open_.pop_back();
-        if (valid(records, entry)) return entry.slot;
+        const Place place = earliest_of_lines(records, before);
+        if (place.time > limit && place.time < nothing) return no_disk;
+        if (place.time == nothing) {
+          lines_[bucket_ & fine_mask_] = Line();
+          if (bucket_ >= bucket_of(limit)) return no_disk;
+          open_next_bucket(records);
+          continue;
+        }
+        lines_[place.line].time[place.lane] = nothing;
+        const std::uint32_t slot = lines_[place.line].slot[place.lane];
+        if (records[slot].next_time == place.time) return slot;
+        continue;
       }
-      if (bucket_ >= bucket_of(limit)) return no_disk;
-      open_next_bucket(records);
+      if (soonest > limit) return no_disk;
+      const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
+      line.time[lane] = nothing;
+      const std::uint32_t slot = line.slot[lane];
+      if (records[slot].next_time == soonest) [[likely]]
+        return slot;
     }
   }
 
   [[nodiscard]] std::size_t bytes() const {
-    return heads_.bytes() + chains_.bytes() + nodes_.capacity_bytes() + chunks_.capacity_bytes() +
-           open_.capacity_bytes();
+    return lines_.capacity_bytes() + chains_.bytes() + chunks_.capacity_bytes();
   }
 
  private:
   static constexpr std::uint32_t none = 0xffffffffu;
+  static constexpr double nothing = std::numeric_limits<double>::infinity();
 
-  struct Entry {
-    double time;
-    std::uint32_t slot;
+  /// Entries of a fine bucket of the open window; lanes without one hold the time `nothing`.
+  struct alignas(64) Line {
+    double time[8] = {nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing};
+    std::uint32_t slot[8] = {};
+    std::uint32_t count = 0;  // lanes used since the bucket was empty
+    std::uint32_t more = 0;   // index of the bucket's next line, or 0
   };
-  struct Node {  // an entry in a fine bucket of the open window
-    double time;
-    std::uint32_t slot, next;
-  };
-  struct Chunk {  // a run of entries of one window
+
+  /// A run of entries of one later window.
+  struct alignas(64) Chunk {
+    static constexpr std::uint32_t capacity = 20;
+    double time[capacity];
+    std::uint32_t slot[capacity];
     std::uint32_t count, next;
-    Entry entries[15];
   };
 
-  [[gnu::always_inline]] std::uint64_t bucket_of(double time) const {
-    const double bucket = (time - start_) * inverse_width_;
-    // Negative: an event at a time already passed by rounding. From 2^52 on: never.
-    if (!(bucket < 0x1p52)) return std::uint64_t{1} << 52;
-    return bucket > 0 ? static_cast<std::uint64_t>(static_cast<std::int64_t>(bucket)) : 0;
-  }
+  struct Place {
+    double time = nothing;
+    std::size_t line = 0, lane = 0;
+  };
 
-  [[gnu::always_inline]] static bool valid(const Record* records, const Entry& entry) {
-    return records[entry.slot].next_time == entry.time;
+  [[gnu::always_inline]] std::int64_t bucket_of(double time) const {
+    const double bucket = (time - start_) * inverse_width_;
+    return static_cast<std::int64_t>(bucket < 0x1p52 ? bucket : 0x1p52);  // from 2^52 on: never
   }
 
   /// The chain of what lies more than a turn of the ring ahead.
-  [[nodiscard]] std::uint64_t beyond() const { return mask_ + 1; }
+  [[nodiscard]] std::uint64_t beyond() const { return ring_mask_ + 1; }
 
-  [[gnu::always_inline]] void link(std::uint64_t head, double time, std::uint32_t slot) {
-    nodes_.push_back({time, slot, heads_[head]});
-    heads_[head] = static_cast<std::uint32_t>(nodes_.size() - 1);
+  /// Into a fine bucket, if `valid`; without a branch, since that cannot be foretold.
+  [[gnu::always_inline]] void enter(std::int64_t bucket, double time, std::uint32_t slot, bool valid) {
+    Line& line = lines_[bucket & fine_mask_];
+    if (line.count == 8) [[unlikely]] {
+      if (valid) enter_full(bucket & fine_mask_, time, slot);
+      return;
+    }
+    line.time[line.count] = valid ? time : nothing;
+    line.slot[line.count] = slot;
+    line.count += valid;
+  }
+
+  /// Into the first lane that is free, or has become so, of the lines of a bucket.
+  [[gnu::noinline]] void enter_full(std::size_t index, double time, std::uint32_t slot) {
+    for (;; index = lines_[index].more) {
+      Line& line = lines_[index];
+      for (std::size_t lane = 0; lane < 8; ++lane) {
+        if (line.time[lane] < nothing) continue;
+        line.time[lane] = time;
+        line.slot[lane] = slot;
+        return;
+      }
+      if (line.more == 0) {
+        const auto more = static_cast<std::uint32_t>(lines_.size());
+        lines_.push_back(Line());
+        lines_[index].more = more;
+      }
+    }
+  }
+
+  template <class Before>
+  [[gnu::noinline]] Place earliest_of_lines(const Record* records, Before&& before) {
+    Place best;
+    std::size_t index = bucket_ & fine_mask_;
+    do {
+      const Line& line = lines_[index];
+      for (std::size_t lane = 0; lane < 8; ++lane) {
+        const double time = line.time[lane];
+        const bool valid = time < nothing && records[line.slot[lane]].next_time == time;
+        if (!valid) continue;
+        if (time < best.time || (time == best.time && before(line.slot[lane], lines_[best.line].slot[best.lane])))
+          best = {time, index, lane};
+      }
+      index = line.more;
+    } while (index != 0);
+    return best;
   }
 
   [[gnu::always_inline]] void append(std::uint64_t chain, double time, std::uint32_t slot) {
     std::uint32_t& last = chains_[chain];
-    if (last == none || chunks_[last].count == 15) [[unlikely]]
+    if (last == none || chunks_[last].count == Chunk::capacity) [[unlikely]]
       last = new_chunk(last);
     Chunk& chunk = chunks_[last];
-    chunk.entries[chunk.count++] = {time, slot};
+    chunk.time[chunk.count] = time;
+    chunk.slot[chunk.count] = slot;
+    ++chunk.count;
   }
 
-  std::uint32_t new_chunk(std::uint32_t next) {
+  [[gnu::noinline]] std::uint32_t new_chunk(std::uint32_t next) {
     std::uint32_t chunk = free_;
     if (chunk != none) {
       free_ = chunks_[chunk].next;
@@ -127,14 +188,13 @@ class Calendar {
     return chunk;
   }
 
-  /// Takes a whole chain and pushes what still counts again, now that its time has come nearer.
-  void deal(std::uint64_t chain, const Record* records) {
+  /// Takes a whole chain and calls visit(time, slot) with its entries.
+  template <class Visit>
+  void empty_chain(std::uint64_t chain, Visit&& visit) {
     std::uint32_t current = std::exchange(chains_[chain], none);
     while (current != none) {
-      for (std::uint32_t i = 0; i < chunks_[current].count; ++i) {
-        const Entry entry = chunks_[current].entries[i];  // a copy: pushing may move the chunks
-        if (valid(records, entry)) push(entry.time, entry.slot);
-      }
+      for (std::uint32_t i = 0; i < chunks_[current].count; ++i)  // visiting may move the chunks
+        visit(chunks_[current].time[i], chunks_[current].slot[i]);
       const std::uint32_t next = chunks_[current].next;
       chunks_[current].next = free_;
       free_ = current;
@@ -144,27 +204,30 @@ class Calendar {
 
   void open_next_bucket(const Record* records) {
     ++bucket_;
-    if ((bucket_ & mask_) == 0) {
-      nodes_.clear();
-      if (((bucket_ >> bits_) & mask_) == 0) deal(beyond(), records);
-      deal((bucket_ >> bits_) & mask_, records);
-    }
-    std::uint32_t& head = heads_[bucket_ & mask_];
-    for (std::uint32_t node = head; node != none; node = nodes_[node].next)
-      open_.push_back({nodes_[node].time, nodes_[node].slot});
-    head = none;
+    if ((bucket_ & fine_mask_) == 0) [[unlikely]]
+      open_window(records);
+  }
+
+  [[gnu::noinline]] void open_window(const Record* records) {
+    lines_.shrink(fine_mask_ + 1);
+    const std::uint64_t window = bucket_ >> fine_bits_ & ring_mask_;
+    if (window == 0)
+      empty_chain(beyond(), [&](double time, std::uint32_t slot) {
+        if (records[slot].next_time == time) push(time, slot);
+      });
+    empty_chain(window, [&](double time, std::uint32_t slot) {
+      enter(bucket_of(time), time, slot, records[slot].next_time == time);
+    });
   }
 
   double start_ = 0, inverse_width_ = 1;
-  unsigned bits_ = 4;            // a window has 2^bits_ fine buckets, the ring 2^bits_ windows
-  std::uint64_t mask_ = 0;       // 2^bits_ - 1
-  std::uint64_t bucket_ = 0;     // the open fine bucket, counted from start_
-  Array<std::uint32_t> heads_;   // fine buckets of the open window: chains of nodes
-  Array<std::uint32_t> chains_;  // the ring of windows, then beyond(): chains of chunks
-  std::uint32_t free_ = none;    // chain of unused chunks
-  GrowingArray<Node> nodes_;
+  unsigned fine_bits_ = 4;                         // a window has 2^fine_bits_ fine buckets
+  std::uint64_t fine_mask_ = 0, ring_mask_ = 0;    // number of fine buckets in a window, of windows in the ring; less 1
+  std::int64_t bucket_ = 0;                        // the open fine bucket, counted from start_
+  GrowingArray<Line> lines_;                       // the fine buckets of the open window; then second lines
+  Array<std::uint32_t> chains_;                    // the ring of windows, then beyond(): last chunk of each
+  std::uint32_t free_ = none;                      // chain of unused chunks
   GrowingArray<Chunk> chunks_;
-  GrowingArray<Entry> open_;  // the open fine bucket
 };
 
 }  // namespace SANDGLASS_ISA

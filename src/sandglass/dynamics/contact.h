@@ -125,7 +125,7 @@ struct PairMasses {
 
 /// Collides a and b, both already advanced to the time of contact. With n the unit vector from a to b and g = v_a -
 /// v_b: b gains delta = mu (1 + eps) (g.n) n, a loses it; mu = m_a m_b / (m_a + m_b); the energy lost is mu (1 - eps^2)
-/// (g.n)^2 / 2. (The paper prints delta with a spurious factor 1/2.)
+/// (g.n)^2 / 2. (The paper prints delta with a spurious factor 1/2.) The same bits if a and b change places.
 template <class A, class B>
 [[gnu::always_inline]] inline Impact collide(A& a, B& b, const PairMasses& masses, double restitution, const Box& box) {
   const double rx = box.nearest(b.x - a.x), ry = box.nearest(b.y - a.y);
@@ -144,7 +144,7 @@ template <class A, class B>
   if (approach() < 0) [[unlikely]] {
     // In a grazing contact rounding may leave the pair approaching still, and it would collide again in place for
     // ever. Part it by impulses of rounding size until the very formula of contact_time says that it recedes.
-    const double ulp = 0x1p-52 * (std::fabs(a.vx) + std::fabs(a.vy) + std::fabs(b.vx) + std::fabs(b.vy));
+    const double ulp = 0x1p-52 * ((std::fabs(a.vx) + std::fabs(a.vy)) + (std::fabs(b.vx) + std::fabs(b.vy)));
     for (double nudge = masses.reduced * ulp / std::sqrt(rr); approach() < 0; nudge *= 2) push(nudge);
   }
   return {virial, -0.5 * virial * (1 - restitution) * rv / rr};

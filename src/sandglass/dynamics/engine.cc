@@ -34,8 +34,8 @@ void IsaEngine::run(double end) {
       case Next::transit:
         on_transit(i, t);
         break;
-      case Next::list_expiry:
-        on_list_expiry(i, t);
+      case Next::review:
+        on_review(i, t);
         break;
     }
   }
@@ -51,30 +51,32 @@ void IsaEngine::check_progress(double t) {
 }
 
 void IsaEngine::on_contact(std::uint32_t i, std::uint32_t j, double t) {
-  if (cold_[i].id > cold_[j].id) std::swap(i, j);
-  Record &a = records_[i], &b = records_[j];
+  Flight a(records_[i]), b(records_[j]);
+  const Species species_a = records_[i].species, species_b = records_[j].species;
   ColdRecord &cold_a = cold_[i], &cold_b = cold_[j];
   advance(a, cold_a.image_x, cold_a.image_y, t, box_);
   advance(b, cold_b.image_x, cold_b.image_y, t, box_);
 
   const CollisionLaw& law = state_.collision;
   const bool elastic = elastic_by_tc(law, t, cold_a.last_contact, cold_b.last_contact);
-  const Impact impact = collide(a, b, masses_[a.species][b.species], elastic ? 1.0 : law.restitution, box_);
+  const Impact impact = collide(a, b, masses_[species_a][species_b], elastic ? 1.0 : law.restitution, box_);
   cold_a.last_contact = cold_b.last_contact = t;
+  set_flight(records_[i], a);
+  set_flight(records_[j], b);
 
   Tally& tally = state_.tally;
-  ++tally.contacts[a.species + b.species];
+  ++tally.contacts[species_a + species_b];
   tally.elastic_contacts += elastic;
   tally.virial.add(impact.virial);
   tally.dissipated.add(impact.dissipated);
   if (log) [[unlikely]]
-    log_event(EventKind::contact, t, i, j);
-  release(i);
-  predict_pending();
+    cold_a.id < cold_b.id ? log_event(EventKind::contact, t, i, j) : log_event(EventKind::contact, t, j, i);
+  foresee_alone(i);
+  foresee_alone(j);
+  predict(i, j);
 }
 
 void IsaEngine::on_kick(std::uint32_t i, double t) {
-  Record& disk = records_[i];
   ColdRecord& cold = cold_[i];
   const Kick kick = Kick::draw(state_.seed, cold.id, ++cold.kick_count);
   cold.next_kick = t + kick.wait / clock_rate(state_.drive);
@@ -87,65 +89,67 @@ void IsaEngine::on_kick(std::uint32_t i, double t) {
     if (j == no_disk) {
       ++tally.kicks_without_partner;
       if (log) log_event(EventKind::kick, t, i, j);
-      release(i);
-      predict_pending();
+      set_next(records_[i], never, Next::review, no_disk);
+      foresee_alone(i);
+      predict(i);
       return;
     }
   }
   ++tally.kicks;
   const double px = state_.drive.amplitude * kick.px, py = state_.drive.amplitude * kick.py;
-  advance(disk, cold.image_x, cold.image_y, t, box_);
-  double gained = give_momentum(disk, px, py, inverse_mass(disk));
-  ++tally.kicked[disk.species];
-  if (pair) {
-    Record& partner = records_[j];
-    advance(partner, cold_[j].image_x, cold_[j].image_y, t, box_);
-    gained += give_momentum(partner, -px, -py, inverse_mass(partner));
-    ++tally.kicked[partner.species];
-  }
+  double gained = push(i, t, px, py);
+  if (pair) gained += push(j, t, -px, -py);
   tally.injected.add(gained);
   if (log) [[unlikely]]
     log_event(EventKind::kick, t, i, j);
-  release(i);
-  if (pair) release(j);
-  predict_pending();
+  pair ? predict(i, j) : predict(i);
+}
+
+/// Gives momentum to disk i at time t; returns the energy gained. What was next for it is void.
+double IsaEngine::push(std::uint32_t i, double t, double px, double py) {
+  if (records_[i].partner != no_disk) part(records_[i].partner);
+  Flight flight(records_[i]);
+  advance(flight, cold_[i].image_x, cold_[i].image_y, t, box_);
+  const double gained = give_momentum(flight, px, py, inverse_mass(records_[i]));
+  set_flight(records_[i], flight);
+  foresee_alone(i);
+  ++state_.tally.kicked[records_[i].species];
+  return gained;
 }
 
 void IsaEngine::on_transit(std::uint32_t i, double t) {
-  advance(records_[i], cold_[i].image_x, cold_[i].image_y, t, box_);
+  Flight flight(records_[i]);
+  advance(flight, cold_[i].image_x, cold_[i].image_y, t, box_);
+  set_flight(records_[i], flight);
   ++state_.tally.transits;
   if (log) log_event(EventKind::transit, t, i, no_disk);
-  release(i);
-  predict_pending();
+  foresee_alone(i);
+  predict(i);
 }
 
-/// Makes the list of disk i anew around where it is at time t. Its record does not change.
-void IsaEngine::on_list_expiry(std::uint32_t i, double t) {
-  ++bookkeeping.list_rebuilds;
-  const std::uint32_t* const list = neighbours_.list(i);
-  for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n) neighbours_.remove(list[n], i, &records_[0]);
-  records_[i].neighbour_count = 0;
-  neighbours_.displace(i, &cold_[0]);
+/// Looks again for the next contact of disk i, after making its list anew if that has expired.
+void IsaEngine::on_review(std::uint32_t i, double t) {
+  set_next(records_[i], never, Next::review, no_disk);
+  if (t >= cold_[i].alone_time) {
+    remake_list(i, t);
+    foresee_alone(i);
+  }
+  predict(i);
+}
 
-  Record now = records_[i];
+/// Makes the list of disk i around where it is at time t. Its record does not change. Nobody names i, whose next event
+/// this was; so nobody who has left its list does.
+void IsaEngine::remake_list(std::uint32_t i, double t) {
+  ++bookkeeping.list_rebuilds;
+  Flight now(records_[i]);
   std::int32_t image_x = 0, image_y = 0;
   advance(now, image_x, image_y, t, box_);
-  cold_[i].centre_x = now.x;
-  cold_[i].centre_y = now.y;
-  const double range = now.radius + largest_radius() + neighbours_.skin();
-  neighbours_.visit_near(now.x, now.y, range, &cold_[0], [&](std::uint32_t k) {
-    if (!neighbours_.listed(&records_[0], &cold_[0], i, k)) return;
-    neighbours_.add(i, k, &records_[0]);
-    neighbours_.add(k, i, &records_[0]);
-  });
-  neighbours_.place(i, &cold_[0]);
-
-  // Nobody names i, whose next event was this; so nobody who has left its list does.
-  release(i);
-  predict_pending();
+  const FixedPoint centre = neighbours_.grid().point(now.x, now.y);
+  neighbours_.renew(i, cold_[i].centre, centre, &records_[0]);
+  cold_[i].centre = centre;
 }
 
-/// Canonical order of two disks' next events at one time: kind, then ids. (List expiry, no event, comes last.)
+/// Canonical order of two disks' next events at one time: kind, then ids. 
 bool IsaEngine::before(std::uint32_t a, std::uint32_t b) const {
   const Record &disk_a = records_[a], &disk_b = records_[b];
   if (disk_a.next != disk_b.next) return disk_a.next < disk_b.next;

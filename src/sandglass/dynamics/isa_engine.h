@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "sandglass/dynamics/array.h"
 #include "sandglass/dynamics/calendar.h"
@@ -36,22 +37,28 @@ class IsaEngine final : public Engine {
   void on_contact(std::uint32_t i, std::uint32_t j, double t);
   void on_kick(std::uint32_t i, double t);
   void on_transit(std::uint32_t i, double t);
-  void on_list_expiry(std::uint32_t i, double t);
+  void on_review(std::uint32_t i, double t);
+  double push(std::uint32_t i, double t, double px, double py);
+  void remake_list(std::uint32_t i, double t);
 
   void check_progress(double t);
 
-  void predict_pending();
   void predict(std::uint32_t i);
+  void predict(std::uint32_t i, std::uint32_t j);
   struct Foreseen {
     double time;
     std::uint32_t partner;
   };
+  void schedule(std::uint32_t i, Foreseen contact);
   [[nodiscard]] Foreseen earliest_contact(std::uint32_t i) const;
-  void orphan(std::uint32_t i);
-  void release(std::uint32_t i);
+  [[nodiscard]] std::pair<Foreseen, Foreseen> earliest_contacts(std::uint32_t i, std::uint32_t j) const;
+  [[nodiscard]] Foreseen earliest_contact_by_rule(std::uint32_t i) const;
+  struct Lanes;
+  [[nodiscard]] Lanes contacts_of_block(const Record& disk, const std::uint32_t* list) const;
+  [[nodiscard]] Foreseen earliest_of_blocks(std::uint32_t i, Lanes first) const;
+  void part(std::uint32_t i);
+  void foresee_alone(std::uint32_t i);
   [[nodiscard]] bool comes_before_next_of(const Record& other, double t, std::uint32_t i) const;
-  [[nodiscard]] double list_expiry(const Record& disk, const ColdRecord& cold) const;
-  [[nodiscard]] bool within_leash(const Record& disk, const ColdRecord& cold, double t) const;
 
   std::uint32_t nearest_partner(std::uint32_t i, double t);
   std::uint32_t partner_within_reach(std::uint32_t i, double t, const Kick& kick);
@@ -60,6 +67,7 @@ class IsaEngine final : public Engine {
   void log_event(EventKind kind, double t, std::uint32_t i, std::uint32_t j) const;
   [[nodiscard]] double mean_lead() const;
   [[nodiscard]] double default_skin() const;
+  [[nodiscard]] double default_cell_size() const;
 
   [[nodiscard]] double inverse_mass(const Record& disk) const { return masses_[disk.species][disk.species].inverse_a; }
   [[nodiscard]] double largest_radius() const { return box_.length / 4 - box_.transit; }
@@ -72,10 +80,10 @@ class IsaEngine final : public Engine {
   Array<Record> records_;
   Array<ColdRecord> cold_;
   Neighbours neighbours_;
+  double leash_ = 0;  // how far a disk may move from the centre of its list
   Calendar calendar_;
   std::uint64_t until_stall_check_ = 1;
   double progress_time_ = -never;
-  GrowingArray<std::uint32_t> pending_;  // disks without a next event, to be predicted before time goes on
   GrowingArray<DiskName> candidates_;    // possible partners of a kick
 };
 

@@ -11,42 +11,46 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
   until_stall_check_ = 1;
   progress_time_ = -never;
   const Disk* const disks = state_.disks.data();
-  if (records_.size() != size_) {
-    records_ = Array<Record>(size_);
+  if (cold_.size() != size_) {
+    records_ = Array<Record>(size_ + 1);
     cold_ = Array<ColdRecord>(size_);
+    // Fills the empty places of neighbour lists: every contact would come after what it has next.
+    records_[size_] = {0, 0, 0, 0, 0, -never, 0, no_disk, Next::review, small, 0};
   }
-  const double skin = default_skin();
-  const double widest = 2 * largest_radius() + skin;
-  neighbours_ = Neighbours(size_, box_, skin, tuning_.cell_size > 0 ? tuning_.cell_size : widest);
+  neighbours_ = Neighbours(size_, box_, state_.mixture, default_skin(), default_cell_size());
+  leash_ = neighbours_.leash();
   for (std::uint32_t i = 0; i < size_; ++i) {
     const Disk& disk = disks[order[i]];
     records_[i] = {disk.x,  disk.y,        disk.vx,      disk.vy, disk.time, never, state_.mixture.radius[disk.species],
-                   no_disk, Next::contact, disk.species, 0};
+                   no_disk, Next::review, disk.species, 0};
     Record now = records_[i];
     std::int32_t image_x = 0, image_y = 0;
     advance(now, image_x, image_y, state_.now, box_);
-    cold_[i] = {now.x, now.y,  disk.last_contact, disk.next_kick, disk.kick_count, disk.image_x, disk.image_y, order[i],
-                0,     no_disk};
+    cold_[i] = {.centre = neighbours_.grid().point(now.x, now.y),
+                .alone_time = never,
+                .last_contact = disk.last_contact,
+                .next_kick = disk.next_kick,
+                .kick_count = disk.kick_count,
+                .image_x = disk.image_x,
+                .image_y = disk.image_y,
+                .id = order[i],
+                .alone = Next::review};
   }
   OverlappingPair deepest;
   for (std::uint32_t i = 0; i < size_; ++i) {
-    neighbours_.visit_near(cold_[i].centre_x, cold_[i].centre_y, widest, &cold_[0], [&](std::uint32_t k) {
-      if (!neighbours_.listed(&records_[0], &cold_[0], i, k)) return;
-      neighbours_.add(i, k, &records_[0]);
-      neighbours_.add(k, i, &records_[0]);
+    neighbours_.enter(i, cold_[i].centre, &records_[0]);
+    for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n) {
+      const std::uint32_t k = neighbours_.list(i)[n];
       const double contact = records_[i].radius + records_[k].radius;
       const double gap = surface_gap(records_[i], records_[k], contact, state_.now, box_);
       if (gap < -1e-9 * contact && -gap > deepest.depth) deepest = {cold_[k].id, cold_[i].id, -gap};
-    });
-    neighbours_.place(i, &cold_[0]);
+    }
   }
 
   // First predictions into a calendar of arbitrary scale, only to learn how far ahead events are.
   calendar_ = Calendar(state_.now, state_.epoch_length, 0);
-  for (std::uint32_t i = 0; i < size_; ++i) {
-    predict(i);
-    predict_pending();
-  }
+  for (std::uint32_t i = 0; i < size_; ++i) foresee_alone(i);
+  for (std::uint32_t i = 0; i < size_; ++i) predict(i);
   const double events = tuning_.bucket_events > 0 ? tuning_.bucket_events : 3;
   calendar_ = Calendar(state_.now, events * mean_lead() / static_cast<double>(size_), size_);
   for (std::uint32_t i = 0; i < size_; ++i)
@@ -62,6 +66,12 @@ double IsaEngine::default_skin() const {
   const double contact = state_.mixture.radius[small] + state_.mixture.radius[big];
   const double skin = std::sqrt(8 * area_per_disk / 3.14159) - contact;
   return std::fmin(std::fmax(skin, 0.2 * contact), room);
+}
+
+/// Two disks to a cell, of the five that there is room for in a line of the grid.
+double IsaEngine::default_cell_size() const {
+  if (tuning_.cell_size > 0) return tuning_.cell_size;
+  return box_.length * std::sqrt(2 / static_cast<double>(size_));
 }
 
 /// About the mean time from now to a disk's next event, from the median over a sample of disks: the median of an

@@ -1,12 +1,13 @@
-// Who may touch whom soon: neighbour lists over a grid of list centres.
+// Who may touch whom soon: neighbour lists.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
 #include "sandglass/dynamics/array.h"
 #include "sandglass/dynamics/contact.h"
+#include "sandglass/dynamics/grid.h"
 #include "sandglass/dynamics/record.h"
+#include "sandglass/dynamics/simd.h"
 
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
@@ -16,115 +17,110 @@ inline namespace SANDGLASS_ISA {
 /// centre; until then no disk outside the list can touch it. Lists are symmetric and hold slots.
 class Neighbours {
  public:
+  /// Lists are read by whole blocks: from their end to the end of the block they hold the slot `size`, of which the
+  /// engine keeps a record that nothing ever touches.
+  static constexpr std::uint32_t block = 8;
+
   Neighbours() = default;
-  Neighbours(std::size_t size, const Box& box, double skin, double cell_size)
-      : box_(box), skin_(skin), leash_(skin / 2 - 1e-9), lists_(size * stride_) {
-    const double cells = std::floor(box.length / cell_size);
-    side_ = cells < 1 ? 1 : cells > 32768 ? 32768 : static_cast<std::int32_t>(cells);
-    inverse_cell_ = side_ / box.length;
-    heads_ = Array<std::uint32_t>(static_cast<std::size_t>(side_) * side_);
-    for (std::uint32_t& head : heads_) head = no_disk;
+  Neighbours(std::size_t size, const Box& box, const Mixture& mixture, double skin, double cell_size)
+      : mixture_(mixture),
+        grid_(box.length, cell_size),
+        skin_(skin),
+        nobody_(static_cast<std::uint32_t>(size)),
+        lists_(size * stride_) {
+    for (std::uint32_t& entry : lists_) entry = nobody_;
   }
 
-  [[nodiscard]] double skin() const { return skin_; }
+  [[nodiscard]] const Grid& grid() const { return grid_; }
 
-  /// How far a disk may move from its list centre: half the skin, less room for rounding.
-  [[nodiscard]] double leash() const { return leash_; }
+  /// How far a disk may move from its list centre: half the skin, less room for what the grid rounds.
+  [[nodiscard]] double leash() const {
+    const double widest = range(mixture_.radius[big], big) + range(mixture_.radius[small], small);
+    return skin_ / 2 - 1e-9 - 4 * grid_.unit() - 1e-6 * widest;
+  }
 
-  [[gnu::always_inline]] std::uint32_t* list(std::uint32_t slot) { return &lists_[std::size_t{slot} * stride_]; }
   [[gnu::always_inline]] const std::uint32_t* list(std::uint32_t slot) const {
     return &lists_[std::size_t{slot} * stride_];
   }
 
-  void place(std::uint32_t slot, ColdRecord* cold) {
-    ColdRecord& disk = cold[slot];
-    disk.cell = static_cast<std::uint32_t>(cell_index(disk.centre_y) * side_ + cell_index(disk.centre_x));
-    disk.cell_next = heads_[disk.cell];
-    heads_[disk.cell] = slot;
-  }
-
-  void displace(std::uint32_t slot, ColdRecord* cold) {
-    std::uint32_t* link = &heads_[cold[slot].cell];
-    while (*link != slot) link = &cold[*link].cell_next;
-    *link = cold[slot].cell_next;
-  }
-
-  [[gnu::always_inline]] void add(std::uint32_t slot, std::uint32_t other, Record* records) {
-    if (records[slot].neighbour_count == stride_) [[unlikely]]
-      widen();
-    list(slot)[records[slot].neighbour_count++] = other;
-  }
-
-  [[gnu::always_inline]] void remove(std::uint32_t slot, std::uint32_t other, Record* records) {
-    std::uint32_t* const neighbours = list(slot);
-    std::uint32_t i = 0;
-    while (neighbours[i] != other) ++i;
-    neighbours[i] = neighbours[--records[slot].neighbour_count];
-  }
-
-  /// Whether two disks belong in each other's lists.
-  [[gnu::always_inline]] bool listed(const Record* records, const ColdRecord* cold, std::uint32_t a,
-                                     std::uint32_t b) const {
-    const double dx = box_.nearest(cold[b].centre_x - cold[a].centre_x);
-    const double dy = box_.nearest(cold[b].centre_y - cold[a].centre_y);
-    const double range = records[a].radius + records[b].radius + skin_;
-    return dx * dx + dy * dy < range * range;
-  }
-
-  /// Calls visit(slot) for every disk whose list centre is within `radius` of (x, y), and for some farther ones.
-  /// Returns whether that was every disk there is.
-  template <class Visit>
-  [[gnu::always_inline]] bool visit_near(double x, double y, double radius, const ColdRecord* cold,
-                                         Visit&& visit) const {
-    auto range = [&](double position, std::int32_t& first, std::int32_t& count) {
-      first = static_cast<std::int32_t>(std::floor((position - radius) * inverse_cell_ - 1e-6));
-      const auto last = static_cast<std::int32_t>(std::floor((position + radius) * inverse_cell_ + 1e-6));
-      count = last - first + 1 < side_ ? last - first + 1 : side_;
-    };
-    std::int32_t first_x = 0, first_y = 0, count_x = 0, count_y = 0;
-    range(x, first_x, count_x);
-    range(y, first_y, count_y);
-    for (std::int32_t j = 0; j < count_y; ++j) {
-      const std::int32_t row = wrapped(first_y + j) * side_;
-      for (std::int32_t i = 0; i < count_x; ++i)
-        for (std::uint32_t slot = heads_[row + wrapped(first_x + i)]; slot != no_disk; slot = cold[slot].cell_next)
-          visit(slot);
+  /// Gives a disk that has none a list around the centre `at`.
+  void enter(std::uint32_t slot, FixedPoint at, Record* records) {
+    const Grid::Slots found = find(at, records[slot]);
+    for (std::uint32_t n = 0; n < found.count; ++n) {
+      add(slot, found.first[n], records);
+      add(found.first[n], slot, records);
     }
-    return count_x == side_ && count_y == side_;
+    grid_.place(slot, at, records[slot].species);
   }
 
-  [[nodiscard]] std::size_t bytes() const { return lists_.bytes() + heads_.bytes(); }
+  /// Makes the list of a disk anew around another centre, and enters it into or strikes it from the lists of those who
+  /// come or go.
+  void renew(std::uint32_t slot, FixedPoint old, FixedPoint at, Record* records) {
+    grid_.displace(slot, old);
+    const Grid::Slots found = find(at, records[slot]);
+    const std::uint32_t before = records[slot].neighbour_count;
+    for (std::uint32_t n = 0; n < found.count; ++n)
+      if (place_of(list(slot), before, found.first[n]) == before) add(found.first[n], slot, records);
+    for (std::uint32_t n = 0; n < before; ++n)
+      if (place_of(found.first, found.count, list(slot)[n]) == found.count) remove(list(slot)[n], slot, records);
+    while (found.count > stride_) widen();
+    std::uint32_t* const mine = &lists_[std::size_t{slot} * stride_];
+    for (std::uint32_t n = 0; n < stride_; ++n) mine[n] = n < found.count ? found.first[n] : nobody_;
+    records[slot].neighbour_count = static_cast<std::uint16_t>(found.count);
+    grid_.place(slot, at, records[slot].species);
+  }
+
+  [[nodiscard]] std::size_t bytes() const { return lists_.bytes() + grid_.bytes(); }
 
  private:
-  [[nodiscard]] std::int32_t cell_index(double position) const {
-    const auto cell = static_cast<std::int32_t>(position * inverse_cell_);
-    return cell < side_ ? cell : side_ - 1;
+  [[nodiscard]] double range(double radius, Species other) const { return radius + mixture_.radius[other] + skin_; }
+
+  [[gnu::always_inline]] Grid::Slots find(FixedPoint at, const Record& disk) {
+    return grid_.within(at, {range(disk.radius, small), range(disk.radius, big)});
   }
 
-  [[nodiscard]] std::int32_t wrapped(std::int32_t cell) const {
-    while (cell < 0) cell += side_;
-    while (cell >= side_) cell -= side_;
-    return cell;
+  /// Where `slot` stands among the first `count` entries of a list, or `count`.
+  static std::uint32_t place_of(const std::uint32_t* entries, std::uint32_t count, std::uint32_t slot) {
+    for (std::uint32_t first = 0; first < count; first += block)
+      if (const unsigned lanes = equal_lanes(entries + first, slot); lanes != 0) {
+        const std::uint32_t place = first + static_cast<std::uint32_t>(__builtin_ctz(lanes));
+        return place < count ? place : count;
+      }
+    return count;
+  }
+
+  void add(std::uint32_t slot, std::uint32_t other, Record* records) {
+    std::uint16_t& count = records[slot].neighbour_count;
+    if (count == stride_) [[unlikely]]
+      widen();
+    lists_[std::size_t{slot} * stride_ + count++] = other;
+  }
+
+  void remove(std::uint32_t slot, std::uint32_t other, Record* records) {
+    std::uint32_t* const neighbours = &lists_[std::size_t{slot} * stride_];
+    const std::uint32_t last = --records[slot].neighbour_count;
+    neighbours[place_of(neighbours, last, other)] = neighbours[last];
+    neighbours[last] = nobody_;
   }
 
   // A list is full (a big disk among small ones): give every list more room.
   [[gnu::noinline]] void widen() {
-    const std::uint32_t wider = stride_ + 8;
+    const std::uint32_t wider = stride_ + block;
     const std::size_t size = lists_.size() / stride_;
     Array<std::uint32_t> lists(size * wider);
     for (std::size_t slot = 0; slot < size; ++slot)
-      for (std::uint32_t i = 0; i < stride_; ++i) lists[slot * wider + i] = lists_[slot * stride_ + i];
+      for (std::uint32_t i = 0; i < wider; ++i)
+        lists[slot * wider + i] = i < stride_ ? lists_[slot * stride_ + i] : nobody_;
     lists_ = std::move(lists);
     stride_ = wider;
   }
 
-  Box box_{1, {}};
-  double skin_ = 0, leash_ = 0;
-  std::uint32_t stride_ = 16;  // room in each list
+  Mixture mixture_;
+  Grid grid_;
+  double skin_ = 0;
+  std::uint32_t nobody_ = 0;
+  std::uint32_t stride_ = 2 * block;  // room in each list
   Array<std::uint32_t> lists_;
-  std::int32_t side_ = 1;  // cells along one side of the box
-  double inverse_cell_ = 1;
-  Array<std::uint32_t> heads_;  // first slot in each cell
 };
 
 }  // namespace SANDGLASS_ISA

@@ -22,17 +22,18 @@ std::uint32_t IsaEngine::nearest_partner(std::uint32_t i, double t) {
   const std::uint32_t* const list = neighbours_.list(i);
   for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) visit(list[n]);
 
-  // Unlisted disks have list centres at least R_i + R_j + skin from ours; each of the two has moved from its own.
+  // Unlisted disks have list centres at least R_i + R_j + 2 leash from ours; each of the two has moved from its own.
   const double x = std::fma(disk.vx, t - disk.time, disk.x), y = std::fma(disk.vy, t - disk.time, disk.y);
-  const double dx = box_.nearest(x - cold_[i].centre_x), dy = box_.nearest(y - cold_[i].centre_y);
+  const Grid& grid = neighbours_.grid();
+  const double dx = grid.offset(cold_[i].centre.x, x), dy = grid.offset(cold_[i].centre.y, y);
   const double moved = std::sqrt(dx * dx + dy * dy);
-  if (best_gap < neighbours_.skin() - neighbours_.leash() - moved - 1e-9) return best;
+  if (best_gap < leash_ - moved) return best;
 
   ++bookkeeping.wide_partner_searches;
-  const double margin = disk.radius + largest_radius() + neighbours_.leash() + 1e-9;
-  for (double radius = margin + neighbours_.skin();; radius *= 1.5) {
+  const double margin = disk.radius + largest_radius() + leash_ + 1e-9;
+  for (double radius = margin + 2 * leash_;; radius *= 1.5) {
     if (best != no_disk && best_gap + margin < radius) radius = best_gap + margin;
-    const bool all = neighbours_.visit_near(x, y, radius, &cold_[0], visit);
+    const bool all = neighbours_.grid().visit_near(x, y, radius, visit);
     if (all || best_gap + margin <= radius) return best;
   }
 }
@@ -48,8 +49,8 @@ std::uint32_t IsaEngine::partner_within_reach(std::uint32_t i, double t, const K
     candidates_.push_back({cold_[k].id, k});
   };
   const double x = std::fma(disk.vx, t - disk.time, disk.x), y = std::fma(disk.vy, t - disk.time, disk.y);
-  const double radius = state_.drive.reach * (disk.radius + largest_radius()) + neighbours_.leash() + 1e-9;
-  neighbours_.visit_near(x, y, radius, &cold_[0], visit);
+  const double radius = state_.drive.reach * (disk.radius + largest_radius()) + leash_ + 1e-9;
+  neighbours_.grid().visit_near(x, y, radius, visit);
   if (candidates_.empty()) return no_disk;
   return nth_by_id(candidates_.begin(), candidates_.end(), kick.pick(candidates_.size())).slot;
 }

@@ -1,10 +1,12 @@
-// How the engine keeps a disk: one cache line that every prediction reads, one that only its own events touch.
+// How the engine keeps a disk: one cache line that every prediction reads, and a record that only its own events touch.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "sandglass/core/state.h"
 #include "sandglass/dynamics/event.h"
+#include "sandglass/dynamics/grid.h"
 
 #ifndef SANDGLASS_ISA
 #define SANDGLASS_ISA baseline
@@ -13,12 +15,16 @@
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
-/// What comes next for a disk. The first three are the physical EventKinds of the same names, in the same order.
-enum class Next : std::uint8_t { contact, kick, transit, list_expiry };
+/// What comes next for a disk, in the order in which it is done at one time: a review (no event: its list expires, or
+/// the partner of a foreseen contact has found another, and its next contact must be looked for again), or the physical
+/// EventKind of the same name.
+enum class Next : std::uint8_t { review, contact, kick, transit };
 
 /// The hot half: the flight, and what comes next. A contact stands in the records of both its disks.
 struct alignas(64) Record {
-  double x, y, vx, vy, time;
+  double x, y, vx, vy;
+
+  double time;
   double next_time;
   double radius;
   std::uint32_t partner;  ///< slot of the disk that `next` (a contact) names, else no_disk
@@ -28,15 +34,34 @@ struct alignas(64) Record {
 };
 static_assert(sizeof(Record) == 64);
 
+/// A flight by itself: the record's first five numbers.
+struct Flight {
+  double x, y, vx, vy, time;
+  explicit Flight(const Record& disk) : x(disk.x), y(disk.y), vx(disk.vx), vy(disk.vy), time(disk.time) {}
+};
+
+/// Writes what comes next for a disk.
+[[gnu::always_inline]] inline void set_next(Record& disk, double next_time, Next next, std::uint32_t partner) {
+  disk.next_time = next_time;
+  disk.next = next;
+  disk.partner = partner;
+}
+
+/// Writes a new flight, after which nothing comes yet.
+[[gnu::always_inline]] inline void set_flight(Record& disk, const Flight& flight) {
+  disk.x = flight.x, disk.y = flight.y, disk.vx = flight.vx, disk.vy = flight.vy, disk.time = flight.time;
+  set_next(disk, std::numeric_limits<double>::infinity(), Next::review, no_disk);
+}
+
 /// The cold half.
 struct alignas(64) ColdRecord {
-  double centre_x, centre_y;  ///< where the disk stood when its neighbour list was made
+  FixedPoint centre;  ///< where the disk stood when its list was made
+  double alone_time;  ///< the earliest of next_kick, transit and list expiry
   double last_contact, next_kick;
   std::uint64_t kick_count;
   std::int32_t image_x, image_y;
   std::uint32_t id;
-  std::uint32_t cell;       ///< of the list centre
-  std::uint32_t cell_next;  ///< next slot in the same cell, or no_disk
+  Next alone;  ///< which of them it is
 };
 static_assert(sizeof(ColdRecord) == 64);
 

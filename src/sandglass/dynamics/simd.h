@@ -1,5 +1,7 @@
-// Vectors of doubles, as wide as the instruction set that this translation unit is compiled for.
+// Vectors as wide as the instruction set that this translation unit is compiled for.
 #pragma once
+
+#include <cstdint>
 
 #if defined(__AVX2__) && defined(__FMA__)
 #define SANDGLASS_SIMD 1
@@ -44,6 +46,16 @@ inline Vector nearest_integer(Vector a) {
 }
 inline Vector choose(Mask m, Vector yes, Vector no) { return {_mm512_mask_blend_pd(m.bits, no.v, yes.v)}; }
 inline double smallest(Vector a) { return _mm512_reduce_min_pd(a.v); }
+
+struct SmallestOf8 {
+  double value;
+  unsigned lanes;  // where it stands
+};
+inline SmallestOf8 smallest_of_8(const double* x) {
+  const Vector v = {_mm512_load_pd(x)};
+  const double value = smallest(v);
+  return {value, (v == Vector::all(value)).lanes()};
+}
 
 /// Transposes eight rows of eight doubles: out[c] holds column c, lane r from rows[r].
 template <class Row>
@@ -102,6 +114,16 @@ inline double smallest(Vector a) {
   return _mm_cvtsd_f64(_mm_min_sd(half, _mm_unpackhi_pd(half, half)));
 }
 
+struct SmallestOf8 {
+  double value;
+  unsigned lanes;  // where it stands
+};
+inline SmallestOf8 smallest_of_8(const double* x) {
+  const Vector low = {_mm256_load_pd(x)}, high = {_mm256_load_pd(x + 4)};
+  const double value = smallest({_mm256_min_pd(low.v, high.v)});
+  return {value, (low == Vector::all(value)).lanes() | (high == Vector::all(value)).lanes() << 4};
+}
+
 /// Transposes four rows of eight doubles: out[c] holds column c, lane r from rows[r].
 template <class Row>
 inline void load_columns(const Row* const (&rows)[4], Vector (&out)[8]) {
@@ -118,6 +140,43 @@ inline void load_columns(const Row* const (&rows)[4], Vector (&out)[8]) {
 }
 
 #endif
+
+/// Which of eight entries, aligned to 32 bytes, equal `value`.
+inline unsigned equal_lanes(const std::uint32_t* entries, std::uint32_t value) {
+  const __m256i all = _mm256_load_si256(reinterpret_cast<const __m256i*>(entries));
+  const __m256i equal = _mm256_cmpeq_epi32(all, _mm256_set1_epi32(static_cast<int>(value)));
+  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(equal)));
+}
+
+}  // namespace SANDGLASS_ISA
+}  // namespace sandglass
+#else
+
+#ifndef SANDGLASS_ISA
+#define SANDGLASS_ISA baseline
+#endif
+
+namespace sandglass {
+inline namespace SANDGLASS_ISA {
+
+struct SmallestOf8 {
+  double value;
+  unsigned lanes;  // where it stands
+};
+inline SmallestOf8 smallest_of_8(const double* x) {
+  double value = x[0];
+  for (int i = 1; i < 8; ++i) value = x[i] < value ? x[i] : value;
+  unsigned lanes = 0;
+  for (int i = 0; i < 8; ++i) lanes |= static_cast<unsigned>(x[i] == value) << i;
+  return {value, lanes};
+}
+
+/// Which of eight entries equal `value`.
+inline unsigned equal_lanes(const std::uint32_t* entries, std::uint32_t value) {
+  unsigned lanes = 0;
+  for (int i = 0; i < 8; ++i) lanes |= static_cast<unsigned>(entries[i] == value) << i;
+  return lanes;
+}
 
 }  // namespace SANDGLASS_ISA
 }  // namespace sandglass

@@ -13,9 +13,11 @@ Cells::Cells(const Frame& frame, double box_length, double side) : box_length_(b
   auto wrapped = [&](double c) { return c - box_length * std::floor(c / box_length); };
   std::vector<std::uint32_t> cell_of(frame.size());
   first_.assign(static_cast<std::size_t>(per_side_ * per_side_) + 1, 0);
+  x_.resize(frame.size());
+  y_.resize(frame.size());
   for (std::size_t id = 0; id < frame.size(); ++id) {
-    x_.push_back(wrapped(frame.x[id]));
-    y_.push_back(wrapped(frame.y[id]));
+    x_[id] = wrapped(frame.x[id]);
+    y_[id] = wrapped(frame.y[id]);
     cell_of[id] = static_cast<std::uint32_t>(cell(y_[id]) * per_side_ + cell(x_[id]));
     ++first_[cell_of[id] + 1];
   }

@@ -9,3 +9,4 @@
 #include "sandglass/prepare/file.h"    // IWYU pragma: export
 #include "sandglass/prepare/insert.h"  // IWYU pragma: export
 #include "sandglass/prepare/quench.h"  // IWYU pragma: export
+#include "sandglass/prepare/repeat.h"  // IWYU pragma: export

@@ -87,7 +87,7 @@ Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& 
   const auto disks = static_cast<double>(start.size());
   const double restitution = start.collision.restitution;
   const double relaxation = 4 / (3 * (1 - restitution * restitution));
-  const double error = wanted_error(disks);
+  const double error = goal.temperature_error > 0 ? goal.temperature_error : wanted_error(disks);
   const double length = std::fmin(std::fmax(relaxation / (disks * error * error), 25.0), 5e3);
   const auto settling = static_cast<std::uint64_t>(std::ceil(5 * relaxation));
 

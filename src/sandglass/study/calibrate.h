@@ -14,6 +14,7 @@ struct CalibrationGoal {
   std::optional<double> frequency{};  ///< fixed f_Dr; none: f_Dr = omega, the collision rate at that temperature
   double beat = 1;                    ///< one mean free time by the formula
   double settle = 0;                  ///< collisions per disk to age before calibrating (dense states)
+  double temperature_error = 0;       ///< relative error of T to aim at; 0: 0.2 %, below N = 625 0.05 / sqrt(N)
 };
 
 /// The values to freeze, and how well they are known.
@@ -29,10 +30,9 @@ struct Calibration {
 /// kicks put in, collisions at rate omega ~ sqrt(T) take out), so after a window with mean temperature T and rate omega
 ///   omega' = omega sqrt(T_goal / T),  f' = omega' (or fixed),  p'^2 = p^2 (f / f') (T_goal / T)^(3/2).
 /// Two rough windows come first; then the results of 3 to 12 longer ones are averaged until, by their scatter, T is
-/// known to 0.2 % (to 0.05 / sqrt(N) in systems below N = 625). A window is as long as a gas would need for sqrt(2)
-/// times that: var(T mean) = T^2 2 tau / (N W), tau = 4 / (3 (1 - eps^2)) the relaxation of T in collisions per disk; T
-/// of dense and strongly dissipative fluids is correlated for longer. Acts at beats only, in a fixed order: same bits
-/// always.
+/// known as well as wanted. A window is as long as a gas would need for sqrt(2) times that: var(T mean) = T^2 2 tau /
+/// (N W), tau = 4 / (3 (1 - eps^2)) the relaxation of T in collisions per disk; T of dense and strongly dissipative
+/// fluids is correlated for longer. Acts at beats only, in a fixed order: same bits always.
 Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& progress = {});
 
 }  // namespace sandglass

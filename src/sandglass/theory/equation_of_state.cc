@@ -103,6 +103,15 @@ double compressibility_factor(const Mixture& mixture, double big_fraction, doubl
   return 1 + (1 + restitution) / 2 * std::numbers::pi / 2 * density * sum;
 }
 
+double fluid_compressibility_factor(const Mixture& mixture, double big_fraction, double packing_fraction) {
+  const auto x = fractions(big_fraction);
+  const auto& radius = mixture.radius;
+  const double mean = x[small] * radius[small] + x[big] * radius[big];
+  const double mean_square = x[small] * radius[small] * radius[small] + x[big] * radius[big] * radius[big];
+  const double alike = mean * mean / mean_square;
+  return (1 - alike) / (1 - packing_fraction) + alike * virial_pade(packing_fraction);
+}
+
 double compressibility_from_rates(const Mixture& mixture, double big_fraction, const PairValues& rates,
                                   const std::array<double, species_count>& temperature, double restitution) {
   const auto x = fractions(big_fraction);

@@ -32,7 +32,13 @@ PairValues contact_values(const Mixture& mixture, double big_fraction, double pa
 double compressibility_factor(const Mixture& mixture, double big_fraction, double packing_fraction,
                               double restitution = 1);
 
-/// The same from given collision rates omega_ij (a disk of species i with any of species j) and temperatures T_i:
+/// Z of the elastic mixture from that of disks of one size (virial_pade) at the same packing fraction,
+/// Z = (1 - xi) / (1 - eta) + xi Z_one, xi = <s>^2 / <s^2> [Santos 1999]. Exact to the second virial coefficient. For
+/// the size ratio 1.43 in equal numbers Z - 1 is within 0.06 % of simulations at eta = 0.1 ... 0.6 (10^7 collisions
+/// each, standard error 0.035 %) and 0.13 % low at 0.65.
+double fluid_compressibility_factor(const Mixture& mixture, double big_fraction, double packing_fraction);
+
+/// Z from given collision rates omega_ij (a disk of species i with any of species j) and temperatures T_i:
 ///   Z - 1 = (1 + eps)/2 sqrt(pi/8) sum_ij x_i omega_ij s_ij mu_ij sqrt(T_i/m_i + T_j/m_j) / T,
 /// mu_ij the reduced mass, T the mean temperature. An exact relation in elastic equilibrium, at any density.
 double compressibility_from_rates(const Mixture& mixture, double big_fraction, const PairValues& rates,
