@@ -1,7 +1,9 @@
 // The event calendar: which disk's event is next, in constant time.
 #pragma once
 
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "sandglass/dynamics/array.h"
@@ -24,11 +26,12 @@ class Calendar {
     unsigned ring_bits = fine_bits_;
     while (ring_bits < 16 && (std::size_t{1} << (fine_bits_ + ring_bits)) < size) ++ring_bits;
     fine_mask_ = (std::uint64_t{1} << fine_bits_) - 1;
+    out_of_cache_ = size > 20000;
     ring_mask_ = (std::uint64_t{1} << ring_bits) - 1;
     lines_ = GrowingArray<Line>(fine_mask_ + 1);
     for (Line& line : lines_) line = Line();
     chains_ = Array<std::uint32_t>(ring_mask_ + 2);
-    for (std::uint32_t& chain : chains_) chain = none;
+    for (std::uint32_t& chain : chains_) chain = no_chunks;
   }
   Calendar() = default;
 
@@ -44,9 +47,11 @@ class Calendar {
   }
 
   /// Takes out and returns the slot whose event is the earliest and not after `limit`; no_disk if there is none.
-  /// `before(a, b)` orders two slots whose events are at the same time.
-  template <class Before>
-  [[gnu::always_inline]] std::uint32_t pop(const Record* records, double limit, Before&& before) {
+  /// `before(a, b)` orders two slots whose events are at the same time; `ahead(slot)` and `soon(slot)` are told whose
+  /// events come about ten and five buckets later.
+  template <class Before, class Ahead, class Soon>
+  [[gnu::always_inline]] std::uint32_t pop(const Record* records, double limit, Before&& before, Ahead&& ahead,
+                                           Soon&& soon) {
     for (;;) {
       Line& line = lines_[bucket_ & fine_mask_];
       const auto [soonest, lanes] = smallest_of_8(line.time);
@@ -55,7 +60,7 @@ class Calendar {
         if (line.more == 0 && soonest == nothing) {
           line.count = 0;
           if (bucket_ >= bucket_of(limit)) return no_disk;
-          open_next_bucket(records);
+          open_next_bucket(records, ahead, soon);
           continue;
         }
         const Place place = earliest_of_lines(records, before);
@@ -63,19 +68,19 @@ class Calendar {
         if (place.time == nothing) {
           lines_[bucket_ & fine_mask_] = Line();
           if (bucket_ >= bucket_of(limit)) return no_disk;
-          open_next_bucket(records);
+          open_next_bucket(records, ahead, soon);
           continue;
         }
         lines_[place.line].time[place.lane] = nothing;
         const std::uint32_t slot = lines_[place.line].slot[place.lane];
-        if (records[slot].next_time == place.time) return slot;
+        if (states(records[slot], place.time)) return slot;
         continue;
       }
       if (soonest > limit) return no_disk;
       const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
       line.time[lane] = nothing;
       const std::uint32_t slot = line.slot[lane];
-      if (records[slot].next_time == soonest) [[likely]]
+      if (states(records[slot], soonest)) [[likely]]
         return slot;
     }
   }
@@ -86,6 +91,7 @@ class Calendar {
 
  private:
   static constexpr std::uint32_t none = 0xffffffffu;
+  static constexpr std::int64_t ahead_buckets = 10, soon_buckets = 5;
   static constexpr double nothing = std::numeric_limits<double>::infinity();
 
   /// Entries of a fine bucket of the open window; lanes without one hold the time `nothing`.
@@ -96,13 +102,34 @@ class Calendar {
     std::uint32_t more = 0;   // index of the bucket's next line, or 0
   };
 
-  /// A run of entries of one later window.
+  /// A run of entries of one later window. Packed, and how far it is full stands elsewhere (chains_): appending writes
+  /// to it without waiting for it.
   struct alignas(64) Chunk {
-    static constexpr std::uint32_t capacity = 20;
-    double time[capacity];
-    std::uint32_t slot[capacity];
-    std::uint32_t count, next;
+    static constexpr std::uint32_t capacity = 21, entry_bytes = 12;
+    std::uint32_t next;  // the chunk filled before, or none
+    unsigned char entries[capacity * entry_bytes];
+
+    [[gnu::always_inline]] void write(std::uint32_t i, double time, std::uint32_t slot) {
+      std::memcpy(entries + i * entry_bytes, &time, sizeof time);
+      std::memcpy(entries + i * entry_bytes + sizeof time, &slot, sizeof slot);
+    }
+    [[nodiscard]] double time(std::uint32_t i) const {
+      double time;
+      std::memcpy(&time, entries + i * entry_bytes, sizeof time);
+      return time;
+    }
+    [[nodiscard]] std::uint32_t slot(std::uint32_t i) const {
+      std::uint32_t slot;
+      std::memcpy(&slot, entries + i * entry_bytes + sizeof(double), sizeof slot);
+      return slot;
+    }
   };
+  static_assert(sizeof(Chunk) == 256);
+
+  /// The end of a chain: its last chunk and how many entries that holds; a chain without chunks is "full".
+  static constexpr std::uint32_t no_chunks = none << 5 | Chunk::capacity;
+  static std::uint32_t chunk_of(std::uint32_t end) { return end >> 5 == none >> 5 ? none : end >> 5; }
+  static std::uint32_t count_of(std::uint32_t end) { return end & 31; }
 
   struct Place {
     double time = nothing;
@@ -112,6 +139,11 @@ class Calendar {
   [[gnu::always_inline]] std::int64_t bucket_of(double time) const {
     const double bucket = (time - start_) * inverse_width_;
     return static_cast<std::int64_t>(bucket < 0x1p52 ? bucket : 0x1p52);  // from 2^52 on: never
+  }
+
+  /// Whether an entry counts. An entry's time is a copy: comparing bits spares a branch for NaN.
+  [[gnu::always_inline]] static bool states(const Record& disk, double time) {
+    return std::bit_cast<std::uint64_t>(disk.next_time) == std::bit_cast<std::uint64_t>(time);
   }
 
   /// The chain of what lies more than a turn of the ring ahead.
@@ -124,7 +156,8 @@ class Calendar {
       if (valid) enter_full(bucket & fine_mask_, time, slot);
       return;
     }
-    line.time[line.count] = valid ? time : nothing;
+    const auto bits = std::bit_cast<std::uint64_t>(time), no_bits = std::bit_cast<std::uint64_t>(nothing);
+    line.time[line.count] = std::bit_cast<double>(bits ^ ((bits ^ no_bits) & (std::uint64_t{valid} - 1)));
     line.slot[line.count] = slot;
     line.count += valid;
   }
@@ -155,7 +188,7 @@ class Calendar {
       const Line& line = lines_[index];
       for (std::size_t lane = 0; lane < 8; ++lane) {
         const double time = line.time[lane];
-        const bool valid = time < nothing && records[line.slot[lane]].next_time == time;
+        const bool valid = time < nothing && states(records[line.slot[lane]], time);
         if (!valid) continue;
         if (time < best.time || (time == best.time && before(line.slot[lane], lines_[best.line].slot[best.lane])))
           best = {time, index, lane};
@@ -166,13 +199,11 @@ class Calendar {
   }
 
   [[gnu::always_inline]] void append(std::uint64_t chain, double time, std::uint32_t slot) {
-    std::uint32_t& last = chains_[chain];
-    if (last == none || chunks_[last].count == Chunk::capacity) [[unlikely]]
-      last = new_chunk(last);
-    Chunk& chunk = chunks_[last];
-    chunk.time[chunk.count] = time;
-    chunk.slot[chunk.count] = slot;
-    ++chunk.count;
+    std::uint32_t& end = chains_[chain];
+    if (count_of(end) == Chunk::capacity) [[unlikely]]
+      end = new_chunk(chunk_of(end)) << 5;
+    chunks_[end >> 5].write(count_of(end), time, slot);
+    ++end;
   }
 
   [[gnu::noinline]] std::uint32_t new_chunk(std::uint32_t next) {
@@ -183,7 +214,6 @@ class Calendar {
       chunk = static_cast<std::uint32_t>(chunks_.size());
       chunks_.push_back({});
     }
-    chunks_[chunk].count = 0;
     chunks_[chunk].next = next;
     return chunk;
   }
@@ -191,10 +221,11 @@ class Calendar {
   /// Takes a whole chain and calls visit(time, slot) with its entries.
   template <class Visit>
   void empty_chain(std::uint64_t chain, Visit&& visit) {
-    std::uint32_t current = std::exchange(chains_[chain], none);
-    while (current != none) {
-      for (std::uint32_t i = 0; i < chunks_[current].count; ++i)  // visiting may move the chunks
-        visit(chunks_[current].time[i], chunks_[current].slot[i]);
+    const std::uint32_t end = std::exchange(chains_[chain], no_chunks);
+    std::uint32_t current = chunk_of(end);
+    for (std::uint32_t count = count_of(end); current != none; count = Chunk::capacity) {
+      for (std::uint32_t i = 0; i < count; ++i)  // visiting may move the chunks
+        visit(chunks_[current].time(i), chunks_[current].slot(i));
       const std::uint32_t next = chunks_[current].next;
       chunks_[current].next = free_;
       free_ = current;
@@ -202,10 +233,42 @@ class Calendar {
     }
   }
 
-  void open_next_bucket(const Record* records) {
+  template <class Ahead, class Soon>
+  [[gnu::always_inline]] void open_next_bucket(const Record* records, Ahead&& ahead, Soon&& soon) {
     ++bucket_;
-    if ((bucket_ & fine_mask_) == 0) [[unlikely]]
+    if ((bucket_ & fine_mask_) == 0) [[unlikely]] {
       open_window(records);
+      for (std::int64_t i = 0; i < ahead_buckets && i < static_cast<std::int64_t>(fine_mask_); ++i)
+        visit_bucket(bucket_ + i, ahead);
+      for (std::int64_t i = 0; i < soon_buckets && i < static_cast<std::int64_t>(fine_mask_); ++i)
+        visit_bucket(bucket_ + i, soon);
+    }
+    if (!out_of_cache_) return;
+    visit_bucket(bucket_ + ahead_buckets, ahead);
+    visit_bucket(bucket_ + soon_buckets, soon);
+    fetch_next_window(records);
+  }
+
+  /// A few entries at a time, brings the records nearer that opening the next window will read.
+  [[gnu::always_inline]] void fetch_next_window(const Record* records) {
+    for (int n = 0; n < 4; ++n) {
+      const std::uint32_t chunk = chunk_of(fetching_);
+      if (chunk == none) return;
+      if (count_of(fetching_) > 0) {
+        --fetching_;
+        prefetch(&records[chunks_[chunk].slot(count_of(fetching_))]);
+      } else {
+        const std::uint32_t next = chunks_[chunk].next;
+        fetching_ = next == none ? no_chunks : next << 5 | Chunk::capacity;
+      }
+    }
+  }
+
+  /// Calls visit(slot) for the entries in the first line of a bucket, if that is in the open window.
+  template <class Visit>
+  [[gnu::always_inline]] void visit_bucket(std::int64_t bucket, Visit&& visit) const {
+    const Line& line = lines_[bucket & fine_mask_];
+    for (std::uint32_t lane = 0; lane < line.count; ++lane) visit(line.slot[lane]);
   }
 
   [[gnu::noinline]] void open_window(const Record* records) {
@@ -213,21 +276,24 @@ class Calendar {
     const std::uint64_t window = bucket_ >> fine_bits_ & ring_mask_;
     if (window == 0)
       empty_chain(beyond(), [&](double time, std::uint32_t slot) {
-        if (records[slot].next_time == time) push(time, slot);
+        if (states(records[slot], time)) push(time, slot);
       });
     empty_chain(window, [&](double time, std::uint32_t slot) {
-      enter(bucket_of(time), time, slot, records[slot].next_time == time);
+      enter(bucket_of(time), time, slot, states(records[slot], time));
     });
+    fetching_ = chains_[(window + 1) & ring_mask_];
   }
 
   double start_ = 0, inverse_width_ = 1;
+  bool out_of_cache_ = false;                      // whether fetching ahead pays
   unsigned fine_bits_ = 4;                         // a window has 2^fine_bits_ fine buckets
   std::uint64_t fine_mask_ = 0, ring_mask_ = 0;    // number of fine buckets in a window, of windows in the ring; less 1
   std::int64_t bucket_ = 0;                        // the open fine bucket, counted from start_
   GrowingArray<Line> lines_;                       // the fine buckets of the open window; then second lines
-  Array<std::uint32_t> chains_;                    // the ring of windows, then beyond(): last chunk of each
+  Array<std::uint32_t> chains_;                    // the ring of windows, then beyond(): where each ends
   std::uint32_t free_ = none;                      // chain of unused chunks
   GrowingArray<Chunk> chunks_;
+  std::uint32_t fetching_ = no_chunks;             // where fetch_next_window has come to
 };
 
 }  // namespace SANDGLASS_ISA

@@ -15,17 +15,39 @@
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
+/// Brings what an event of disk i will need nearer to the processor: first its own lists and cold record, and its
+/// partner's; then, through the lists, the neighbours.
+void IsaEngine::fetch_disk(std::uint32_t i) const {
+  const std::uint32_t partner = records_[i].partner;
+  prefetch(neighbours_.list(i));
+  prefetch(&cold_[i]);
+  const std::uint32_t j = partner == no_disk ? i : partner;
+  prefetch(neighbours_.list(j));
+  prefetch(&cold_[j]);
+}
+
+void IsaEngine::fetch_neighbours(std::uint32_t i) const {
+  const std::uint32_t partner = records_[i].partner;
+  const std::uint32_t* list = neighbours_.list(i);
+  for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
+  if (partner == no_disk) return;
+  list = neighbours_.list(partner);
+  for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
+}
+
 void IsaEngine::run(double end) {
-  for (;;) {
-    const std::uint32_t i =
-        calendar_.pop(&records_[0], end, [this](std::uint32_t a, std::uint32_t b) { return before(a, b); });
-    if (i == no_disk) break;
+  auto in_order = [this](std::uint32_t a, std::uint32_t b) { return before(a, b); };
+  auto ahead = [this](std::uint32_t i) { fetch_disk(i); };
+  auto soon = [this](std::uint32_t i) { fetch_neighbours(i); };
+  auto pop = [&] { return calendar_.pop(&records_[0], end, in_order, ahead, soon); };
+  for (std::uint32_t i = pop(); i != no_disk; i = pop()) {
     const Record& disk = records_[i];
     const double t = disk.next_time;
     if (--until_stall_check_ == 0) [[unlikely]]
       check_progress(t);
     switch (disk.next) {
       case Next::contact:
+      case Next::contact_entered_by_partner:
         on_contact(i, disk.partner, t);
         break;
       case Next::kick:
@@ -50,30 +72,50 @@ void IsaEngine::check_progress(double t) {
   until_stall_check_ = (std::uint64_t{1} << 20) + 64 * size_;
 }
 
-void IsaEngine::on_contact(std::uint32_t i, std::uint32_t j, double t) {
-  Flight a(records_[i]), b(records_[j]);
-  const Species species_a = records_[i].species, species_b = records_[j].species;
-  ColdRecord &cold_a = cold_[i], &cold_b = cold_[j];
-  advance(a, cold_a.image_x, cold_a.image_y, t, box_);
-  advance(b, cold_b.image_x, cold_b.image_y, t, box_);
+/// The collision of two disks at time t, worked out but not carried out.
+[[gnu::always_inline]] inline IsaEngine::Collision IsaEngine::collision(std::uint32_t i, std::uint32_t j, double t) const {
+  const ColdRecord &cold_a = cold_[i], &cold_b = cold_[j];
+  Collision result{i,
+                   j,
+                   Flight(records_[i]),
+                   Flight(records_[j]),
+                   {cold_a.image_x, cold_a.image_y},
+                   {cold_b.image_x, cold_b.image_y},
+                   {},
+                   elastic_by_tc(state_.collision, t, cold_a.last_contact, cold_b.last_contact)};
+  advance(result.a, result.image_a.x, result.image_a.y, t, box_);
+  advance(result.b, result.image_b.x, result.image_b.y, t, box_);
+  const PairMasses& masses = masses_[records_[i].species][records_[j].species];
+  result.impact = collide(result.a, result.b, masses, result.elastic ? 1.0 : state_.collision.restitution, box_);
+  return result;
+}
 
-  const CollisionLaw& law = state_.collision;
-  const bool elastic = elastic_by_tc(law, t, cold_a.last_contact, cold_b.last_contact);
-  const Impact impact = collide(a, b, masses_[species_a][species_b], elastic ? 1.0 : law.restitution, box_);
-  cold_a.last_contact = cold_b.last_contact = t;
+[[gnu::always_inline]] inline void IsaEngine::carry_out(const Collision& result) {
+  const auto [i, j, a, b, image_a, image_b, impact, elastic] = result;
+  ColdRecord &cold_a = cold_[i], &cold_b = cold_[j];
   set_flight(records_[i], a);
   set_flight(records_[j], b);
+  cold_a.image_x = image_a.x, cold_a.image_y = image_a.y;
+  cold_b.image_x = image_b.x, cold_b.image_y = image_b.y;
+  cold_a.last_contact = cold_b.last_contact = a.time;
 
   Tally& tally = state_.tally;
-  ++tally.contacts[species_a + species_b];
+  ++tally.contacts[records_[i].species + records_[j].species];
   tally.elastic_contacts += elastic;
   tally.virial.add(impact.virial);
   tally.dissipated.add(impact.dissipated);
   if (log) [[unlikely]]
-    cold_a.id < cold_b.id ? log_event(EventKind::contact, t, i, j) : log_event(EventKind::contact, t, j, i);
-  foresee_alone(i);
-  foresee_alone(j);
-  predict(i, j);
+    cold_a.id < cold_b.id ? log_event(EventKind::contact, a.time, i, j) : log_event(EventKind::contact, a.time, j, i);
+}
+
+/// The searches for what comes next begin before the new flights are written: they need not wait for that, nor for each
+/// other. The two disks themselves are left out; they have just parted.
+void IsaEngine::on_contact(std::uint32_t i, std::uint32_t j, double t) {
+  const Collision result = collision(i, j, t);
+  const Lanes of_i = first_contacts(i, result.a, j), of_j = first_contacts(j, result.b, i);
+  carry_out(result);
+  settle(i, of_i);
+  settle(j, of_j);
 }
 
 void IsaEngine::on_kick(std::uint32_t i, double t) {
@@ -90,7 +132,6 @@ void IsaEngine::on_kick(std::uint32_t i, double t) {
       ++tally.kicks_without_partner;
       if (log) log_event(EventKind::kick, t, i, j);
       set_next(records_[i], never, Next::review, no_disk);
-      foresee_alone(i);
       predict(i);
       return;
     }
@@ -102,7 +143,11 @@ void IsaEngine::on_kick(std::uint32_t i, double t) {
   tally.injected.add(gained);
   if (log) [[unlikely]]
     log_event(EventKind::kick, t, i, j);
-  pair ? predict(i, j) : predict(i);
+  if (!pair) return predict(i);
+  const Lanes of_i = first_contacts(i, Flight(records_[i]), no_disk),
+              of_j = first_contacts(j, Flight(records_[j]), no_disk);
+  settle(i, of_i);
+  settle(j, of_j);
 }
 
 /// Gives momentum to disk i at time t; returns the energy gained. What was next for it is void.
@@ -112,7 +157,6 @@ double IsaEngine::push(std::uint32_t i, double t, double px, double py) {
   advance(flight, cold_[i].image_x, cold_[i].image_y, t, box_);
   const double gained = give_momentum(flight, px, py, inverse_mass(records_[i]));
   set_flight(records_[i], flight);
-  foresee_alone(i);
   ++state_.tally.kicked[records_[i].species];
   return gained;
 }
@@ -123,17 +167,13 @@ void IsaEngine::on_transit(std::uint32_t i, double t) {
   set_flight(records_[i], flight);
   ++state_.tally.transits;
   if (log) log_event(EventKind::transit, t, i, no_disk);
-  foresee_alone(i);
   predict(i);
 }
 
 /// Looks again for the next contact of disk i, after making its list anew if that has expired.
 void IsaEngine::on_review(std::uint32_t i, double t) {
   set_next(records_[i], never, Next::review, no_disk);
-  if (t >= cold_[i].alone_time) {
-    remake_list(i, t);
-    foresee_alone(i);
-  }
+  if (!within_leash(records_[i], cold_[i], t)) remake_list(i, t);
   predict(i);
 }
 
@@ -152,7 +192,8 @@ void IsaEngine::remake_list(std::uint32_t i, double t) {
 /// Canonical order of two disks' next events at one time: kind, then ids. 
 bool IsaEngine::before(std::uint32_t a, std::uint32_t b) const {
   const Record &disk_a = records_[a], &disk_b = records_[b];
-  if (disk_a.next != disk_b.next) return disk_a.next < disk_b.next;
+  auto kind = [](Next next) { return next == Next::contact_entered_by_partner ? Next::contact : next; };
+  if (kind(disk_a.next) != kind(disk_b.next)) return disk_a.next < disk_b.next;
   auto ids = [&](std::uint32_t slot, const Record& disk) {
     const std::uint64_t own = cold_[slot].id;
     const std::uint64_t other = disk.partner == no_disk ? no_disk : cold_[disk.partner].id;

@@ -42,8 +42,8 @@ class Grid {
   void place(std::uint32_t slot, FixedPoint at, Species species) {
     for (std::uint32_t index = cell_of(at);; index = cells_[index].more) {
       Cell& cell = cells_[index];
-      for (std::uint32_t lane = 0; lane < Cell::capacity; ++lane) {
-        if (cell.name[lane] != Cell::empty) continue;
+      if (const unsigned lanes = cell.lanes_of(Cell::empty); lanes != 0) [[likely]] {
+        const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
         cell.x[lane] = at.x, cell.y[lane] = at.y, cell.name[lane] = slot | std::uint32_t{species} << 31;
         return;
       }
@@ -55,13 +55,14 @@ class Grid {
     }
   }
 
-  void displace(std::uint32_t slot, FixedPoint at) {
-    for (std::uint32_t index = cell_of(at);; index = cells_[index].more)
-      for (std::uint32_t& name : cells_[index].name)
-        if ((name & Cell::slot_bits) == slot) {
-          name = Cell::empty;
-          return;
-        }
+  void displace(std::uint32_t slot, FixedPoint at, Species species) {
+    for (std::uint32_t index = cell_of(at);; index = cells_[index].more) {
+      Cell& cell = cells_[index];
+      if (const unsigned lanes = cell.lanes_of(slot | std::uint32_t{species} << 31); lanes != 0) [[likely]] {
+        cell.name[static_cast<unsigned>(__builtin_ctz(lanes))] = Cell::empty;
+        return;
+      }
+    }
   }
 
   struct Slots {
@@ -101,6 +102,12 @@ class Grid {
     std::uint32_t x[capacity] = {}, y[capacity] = {};
     std::uint32_t name[capacity] = {empty, empty, empty, empty, empty};  // slot, and the species in the highest bit
     std::uint32_t more = 0;                                              // index of the cell's next line, or 0
+
+    [[nodiscard]] unsigned lanes_of(std::uint32_t wanted) const {
+      unsigned lanes = 0;
+      for (std::uint32_t lane = 0; lane < capacity; ++lane) lanes |= unsigned{name[lane] == wanted} << lane;
+      return lanes;
+    }
   };
   static_assert(sizeof(Cell) == 64);
 

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <utility>
 
 #include "sandglass/dynamics/array.h"
 #include "sandglass/dynamics/calendar.h"
@@ -35,6 +34,18 @@ class IsaEngine final : public Engine {
 
  private:
   void on_contact(std::uint32_t i, std::uint32_t j, double t);
+  struct Image {
+    std::int32_t x, y;
+  };
+  struct Collision {
+    std::uint32_t i, j;
+    Flight a, b;  // after it
+    Image image_a, image_b;
+    Impact impact;
+    bool elastic;  // by the TC model
+  };
+  [[nodiscard]] Collision collision(std::uint32_t i, std::uint32_t j, double t) const;
+  void carry_out(const Collision& result);
   void on_kick(std::uint32_t i, double t);
   void on_transit(std::uint32_t i, double t);
   void on_review(std::uint32_t i, double t);
@@ -42,22 +53,29 @@ class IsaEngine final : public Engine {
   void remake_list(std::uint32_t i, double t);
 
   void check_progress(double t);
+  void fetch_disk(std::uint32_t i) const;
+  void fetch_neighbours(std::uint32_t i) const;
 
   void predict(std::uint32_t i);
-  void predict(std::uint32_t i, std::uint32_t j);
+  struct Lanes {  // the contacts of one block of a list
+    double soonest;
+    unsigned all, strict;  // lanes with the soonest time; those that come strictly before what the other has next
+  };
+  void settle(std::uint32_t i, Lanes begun);
   struct Foreseen {
     double time;
     std::uint32_t partner;
   };
   void schedule(std::uint32_t i, Foreseen contact);
   [[nodiscard]] Foreseen earliest_contact(std::uint32_t i) const;
-  [[nodiscard]] std::pair<Foreseen, Foreseen> earliest_contacts(std::uint32_t i, std::uint32_t j) const;
   [[nodiscard]] Foreseen earliest_contact_by_rule(std::uint32_t i) const;
-  struct Lanes;
-  [[nodiscard]] Lanes contacts_of_block(const Record& disk, const std::uint32_t* list) const;
-  [[nodiscard]] Foreseen earliest_of_blocks(std::uint32_t i, Lanes first) const;
+  [[nodiscard]] Lanes contacts_of_block(const Flight& disk, double disk_radius, const std::uint32_t* list,
+                                        std::uint32_t except) const;
+  [[nodiscard]] Lanes first_contacts(std::uint32_t i, const Flight& flight, std::uint32_t except) const;
+  [[nodiscard]] Foreseen earliest_of_blocks(std::uint32_t i, Lanes lanes) const;
   void part(std::uint32_t i);
-  void foresee_alone(std::uint32_t i);
+  [[nodiscard]] bool within_leash(const Record& disk, const ColdRecord& cold, double t) const;
+  [[nodiscard]] double list_expiry(const Record& disk, const ColdRecord& cold) const;
   [[nodiscard]] bool comes_before_next_of(const Record& other, double t, std::uint32_t i) const;
 
   std::uint32_t nearest_partner(std::uint32_t i, double t);

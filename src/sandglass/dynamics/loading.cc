@@ -27,14 +27,12 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
     std::int32_t image_x = 0, image_y = 0;
     advance(now, image_x, image_y, state_.now, box_);
     cold_[i] = {.centre = neighbours_.grid().point(now.x, now.y),
-                .alone_time = never,
                 .last_contact = disk.last_contact,
                 .next_kick = disk.next_kick,
                 .kick_count = disk.kick_count,
                 .image_x = disk.image_x,
                 .image_y = disk.image_y,
-                .id = order[i],
-                .alone = Next::review};
+                .id = order[i]};
   }
   OverlappingPair deepest;
   for (std::uint32_t i = 0; i < size_; ++i) {
@@ -47,9 +45,8 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
     }
   }
 
-  // First predictions into a calendar of arbitrary scale, only to learn how far ahead events are.
-  calendar_ = Calendar(state_.now, state_.epoch_length, 0);
-  for (std::uint32_t i = 0; i < size_; ++i) foresee_alone(i);
+  // First predictions into a calendar where nearly all is far ahead, only to learn how far that is.
+  calendar_ = Calendar(state_.now, 1e-12 * state_.epoch_length, 0);
   for (std::uint32_t i = 0; i < size_; ++i) predict(i);
   const double events = tuning_.bucket_events > 0 ? tuning_.bucket_events : 3;
   calendar_ = Calendar(state_.now, events * mean_lead() / static_cast<double>(size_), size_);

@@ -56,17 +56,29 @@ class Neighbours {
   /// Makes the list of a disk anew around another centre, and enters it into or strikes it from the lists of those who
   /// come or go.
   void renew(std::uint32_t slot, FixedPoint old, FixedPoint at, Record* records) {
-    grid_.displace(slot, old);
+    grid_.displace(slot, old, records[slot].species);
     const Grid::Slots found = find(at, records[slot]);
     const std::uint32_t before = records[slot].neighbour_count;
-    for (std::uint32_t n = 0; n < found.count; ++n)
-      if (place_of(list(slot), before, found.first[n]) == before) add(found.first[n], slot, records);
-    for (std::uint32_t n = 0; n < before; ++n)
-      if (place_of(found.first, found.count, list(slot)[n]) == found.count) remove(list(slot)[n], slot, records);
-    while (found.count > stride_) widen();
+    while (found.count > stride_ || before + found.count > changes_.size()) [[unlikely]] {
+      if (found.count > stride_) widen();
+      if (before + found.count > changes_.size()) changes_ = Array<std::uint32_t>(2 * (before + found.count));
+    }
+    // Most stay. Who comes or goes is gathered first, without branches, since they cannot be foretold.
     std::uint32_t* const mine = &lists_[std::size_t{slot} * stride_];
+    std::uint32_t came = 0, gone = 0;
+    for (std::uint32_t n = 0; n < found.count; ++n) {
+      changes_[came] = found.first[n];
+      came += !holds(mine, before, found.first[n]);
+    }
+    std::uint32_t* const goers = &changes_[came];
+    for (std::uint32_t n = 0; n < before; ++n) {
+      goers[gone] = mine[n];
+      gone += !holds(found.first, found.count, mine[n]);
+    }
     for (std::uint32_t n = 0; n < stride_; ++n) mine[n] = n < found.count ? found.first[n] : nobody_;
     records[slot].neighbour_count = static_cast<std::uint16_t>(found.count);
+    for (std::uint32_t n = 0; n < gone; ++n) remove(goers[n], slot, records);
+    for (std::uint32_t n = 0; n < came; ++n) add(changes_[n], slot, records);
     grid_.place(slot, at, records[slot].species);
   }
 
@@ -79,14 +91,12 @@ class Neighbours {
     return grid_.within(at, {range(disk.radius, small), range(disk.radius, big)});
   }
 
-  /// Where `slot` stands among the first `count` entries of a list, or `count`.
-  static std::uint32_t place_of(const std::uint32_t* entries, std::uint32_t count, std::uint32_t slot) {
-    for (std::uint32_t first = 0; first < count; first += block)
-      if (const unsigned lanes = equal_lanes(entries + first, slot); lanes != 0) {
-        const std::uint32_t place = first + static_cast<std::uint32_t>(__builtin_ctz(lanes));
-        return place < count ? place : count;
-      }
-    return count;
+  /// Whether `slot` is among the first `count` entries, which are read by whole blocks.
+  [[gnu::always_inline]] static bool holds(const std::uint32_t* entries, std::uint32_t count, std::uint32_t slot) {
+    unsigned lanes = equal_lanes(entries, slot) & ((1u << (count < block ? count : block)) - 1);
+    for (std::uint32_t first = block; first < count; first += block)
+      lanes |= equal_lanes(entries + first, slot) & ((1u << (count - first < block ? count - first : block)) - 1);
+    return lanes != 0;
   }
 
   void add(std::uint32_t slot, std::uint32_t other, Record* records) {
@@ -99,7 +109,11 @@ class Neighbours {
   void remove(std::uint32_t slot, std::uint32_t other, Record* records) {
     std::uint32_t* const neighbours = &lists_[std::size_t{slot} * stride_];
     const std::uint32_t last = --records[slot].neighbour_count;
-    neighbours[place_of(neighbours, last, other)] = neighbours[last];
+    std::uint32_t place = 0;
+    unsigned lanes = equal_lanes(neighbours, other);
+    while (lanes == 0) lanes = equal_lanes(neighbours + (place += block), other);
+    place += static_cast<std::uint32_t>(__builtin_ctz(lanes));
+    neighbours[place] = neighbours[last];
     neighbours[last] = nobody_;
   }
 
@@ -121,6 +135,7 @@ class Neighbours {
   std::uint32_t nobody_ = 0;
   std::uint32_t stride_ = 2 * block;  // room in each list
   Array<std::uint32_t> lists_;
+  Array<std::uint32_t> changes_ = Array<std::uint32_t>(64);
 };
 
 }  // namespace SANDGLASS_ISA

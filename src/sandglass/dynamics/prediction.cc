@@ -10,21 +10,22 @@ inline namespace SANDGLASS_ISA {
 /// Predicts what comes next for disk i, whose flight or list is new.
 void IsaEngine::predict(std::uint32_t i) { schedule(i, earliest_contact(i)); }
 
-/// For two disks at once: the processor does the searches side by side.
-void IsaEngine::predict(std::uint32_t i, std::uint32_t j) {
-  auto [of_i, of_j] = earliest_contacts(i, j);
-  schedule(i, of_i);
-  if (of_j.partner != no_disk && !comes_before_next_of(records_[of_j.partner], of_j.time, j)) [[unlikely]]
-    of_j = earliest_contact(j);  // i took what j was to meet
-  schedule(j, of_j);
+/// The same after a search that was begun before other disks were settled.
+void IsaEngine::settle(std::uint32_t i, Lanes begun) {
+  Foreseen contact = earliest_of_blocks(i, begun);
+  if (contact.partner != no_disk && !comes_before_next_of(records_[contact.partner], contact.time, i)) [[unlikely]]
+    contact = earliest_contact(i);
+  schedule(i, contact);
 }
 
 /// Disk i has lost the partner of its contact. It looks for another when the contact would have come: whoever meets it
 /// before will have found it.
 void IsaEngine::part(std::uint32_t i) {
   ++bookkeeping.orphans;
-  set_next(records_[i], records_[i].next_time, Next::review, no_disk);
-  calendar_.push(records_[i].next_time, i);  // the entry may name the other disk of the pair
+  Record& disk = records_[i];
+  if (disk.next == Next::contact_entered_by_partner) calendar_.push(disk.next_time, i);
+  disk.next = Next::review;
+  disk.partner = no_disk;
 }
 
 /// Whether a contact at time t of disk i with `other` comes before what `other` has next, in canonical order: contacts
@@ -52,14 +53,11 @@ IsaEngine::Foreseen IsaEngine::earliest_contact_by_rule(std::uint32_t i) const {
 #ifdef SANDGLASS_SIMD
 
 /// One block of the list: contact_time, lane by lane, the same operations in the same order.
-struct IsaEngine::Lanes {
-  double soonest;
-  unsigned all, strict;  // lanes with the soonest time; those that come strictly before what the other has next
-};
-[[gnu::always_inline]] inline IsaEngine::Lanes IsaEngine::contacts_of_block(const Record& disk,
-                                                                            const std::uint32_t* list) const {
+[[gnu::always_inline]] inline IsaEngine::Lanes IsaEngine::contacts_of_block(const Flight& disk, double disk_radius,
+                                                                            const std::uint32_t* list,
+                                                                            std::uint32_t except) const {
   const Vector x = Vector::all(disk.x), y = Vector::all(disk.y), vx = Vector::all(disk.vx), vy = Vector::all(disk.vy);
-  const Vector time = Vector::all(disk.time), radius = Vector::all(disk.radius);
+  const Vector time = Vector::all(disk.time), radius = Vector::all(disk_radius);
   const Vector length = Vector::all(box_.length), inverse = Vector::all(box_.inverse), zero = Vector::all(0);
   auto nearest = [&](Vector difference) { return fnma(length, nearest_integer(difference * inverse), difference); };
   const Record* rows[Vector::width];
@@ -77,14 +75,18 @@ struct IsaEngine::Lanes {
   const Mask touching = c <= zero;
   const Vector wait = choose(touching, zero, c / (sqrt(discriminant) - ru));
   const Vector when = t + wait;
-  const Mask meets = (ru < zero) & (touching | (zero <= discriminant)) & (when <= other[5]);
+  const Mask meets = other_than(list, except) & (ru < zero) & (touching | (zero <= discriminant)) & (when <= other[5]);
   const Vector candidate = choose(meets, when, Vector::all(never));
   const double soonest = smallest(candidate);
   return {soonest, (candidate == Vector::all(soonest)).lanes(), (candidate < other[5]).lanes()};
 }
 
+IsaEngine::Lanes IsaEngine::first_contacts(std::uint32_t i, const Flight& flight, std::uint32_t except) const {
+  return contacts_of_block(flight, records_[i].radius, neighbours_.list(i), except);
+}
+
 /// The earliest of all blocks, the first of which is done.
-[[gnu::always_inline]] inline IsaEngine::Foreseen IsaEngine::earliest_of_blocks(std::uint32_t i, Lanes lanes) const {
+IsaEngine::Foreseen IsaEngine::earliest_of_blocks(std::uint32_t i, Lanes lanes) const {
   Foreseen earliest{never, no_disk};
   const Record& disk = records_[i];
   const std::uint32_t* list = neighbours_.list(i);
@@ -100,30 +102,20 @@ struct IsaEngine::Lanes {
     first += Vector::width;
     if (first >= disk.neighbour_count) return earliest;
     list += Vector::width;
-    lanes = contacts_of_block(disk, list);
+    lanes = contacts_of_block(Flight(disk), disk.radius, list, no_disk);
   }
-}
-
-IsaEngine::Foreseen IsaEngine::earliest_contact(std::uint32_t i) const {
-  return earliest_of_blocks(i, contacts_of_block(records_[i], neighbours_.list(i)));
-}
-
-std::pair<IsaEngine::Foreseen, IsaEngine::Foreseen> IsaEngine::earliest_contacts(std::uint32_t i,
-                                                                                 std::uint32_t j) const {
-  const Lanes of_i = contacts_of_block(records_[i], neighbours_.list(i));
-  const Lanes of_j = contacts_of_block(records_[j], neighbours_.list(j));
-  return {earliest_of_blocks(i, of_i), earliest_of_blocks(j, of_j)};
 }
 
 #else
 
-IsaEngine::Foreseen IsaEngine::earliest_contact(std::uint32_t i) const { return earliest_contact_by_rule(i); }
-std::pair<IsaEngine::Foreseen, IsaEngine::Foreseen> IsaEngine::earliest_contacts(std::uint32_t i,
-                                                                                 std::uint32_t j) const {
-  return {earliest_contact_by_rule(i), earliest_contact_by_rule(j)};
-}
+IsaEngine::Lanes IsaEngine::first_contacts(std::uint32_t, const Flight&, std::uint32_t) const { return {}; }
+IsaEngine::Foreseen IsaEngine::earliest_of_blocks(std::uint32_t i, Lanes) const { return earliest_contact_by_rule(i); }
 
 #endif
+
+IsaEngine::Foreseen IsaEngine::earliest_contact(std::uint32_t i) const {
+  return earliest_of_blocks(i, first_contacts(i, Flight(records_[i]), no_disk));
+}
 
 /// Settles what comes next for disk i, given its earliest contact, and enters it into the calendar. A contact is taken
 /// only if it also comes before what the other disk has next; both may have to part from others.
@@ -131,47 +123,49 @@ void IsaEngine::schedule(std::uint32_t i, Foreseen contact) {
   ++bookkeeping.predictions;
   Record& disk = records_[i];
   const ColdRecord& cold = cold_[i];
-  if (cold.alone_time < contact.time) {
-    if (disk.partner != no_disk) part(disk.partner);
-    set_next(disk, cold.alone_time, cold.alone, no_disk);
-    if (cold.alone_time < never) calendar_.push(cold.alone_time, i);
-    return;
-  }
-  if (contact.partner == no_disk || contact.partner == disk.partner) return;  // never anything; it has chosen i already
+  double t = contact.time;
+  Next next = Next::contact;
+  auto consider = [&](double time, Next what) {
+    if (time < t) t = time, next = what;
+  };
+  consider(cold.next_kick, Next::kick);
+  // Expiry and transit cost a root and divisions; most often it is plain that they do not come first.
+  if (!within_leash(disk, cold, t)) consider(list_expiry(disk, cold), Next::review);
+  const double speed_x = std::fabs(disk.vx), speed_y = std::fabs(disk.vy);
+  const double speed = speed_x > speed_y ? speed_x : speed_y;
+  if (!(speed * (t - disk.time) < 0.999 * box_.transit)) consider(transit_time(disk, box_), Next::transit);
+
+  if (next == Next::contact && contact.partner == disk.partner) return;  // it has chosen i already, or nothing comes
   if (disk.partner != no_disk) part(disk.partner);
-  Record& other = records_[contact.partner];
-  if (other.partner != no_disk) part(other.partner);
-  set_next(disk, contact.time, Next::contact, contact.partner);
-  set_next(other, contact.time, Next::contact, i);
-  calendar_.push(contact.time, i);
+  if (next == Next::contact) {
+    if (contact.partner == no_disk) return;
+    Record& other = records_[contact.partner];
+    if (other.partner != no_disk) part(other.partner);
+    set_next(other, t, Next::contact_entered_by_partner, i);
+  }
+  set_next(disk, t, next, next == Next::contact ? contact.partner : no_disk);
+  calendar_.push(t, i);
 }
 
-/// Finds when disk i, flying freely, is next due for anything but a contact: its kick, its transit, or the expiry of
-/// its list, when it leaves the circle of its leash. That is the later root, since its record may be older than its
+/// Whether the disk, flying freely, is still plainly within the leash of its list centre at time t.
+bool IsaEngine::within_leash(const Record& disk, const ColdRecord& cold, double t) const {
+  const Grid& grid = neighbours_.grid();
+  const double flight = t - disk.time;
+  const double dx = grid.offset(cold.centre.x, disk.x) + disk.vx * flight;
+  const double dy = grid.offset(cold.centre.y, disk.y) + disk.vy * flight;
+  return dx * dx + dy * dy < 0.999 * leash_ * leash_;
+}
+
+/// When the disk, flying freely, leaves the circle of its leash: the later root, since its record may be older than its
 /// list and lie outside on the other side.
-void IsaEngine::foresee_alone(std::uint32_t i) {
-  const Record& disk = records_[i];
-  ColdRecord& cold = cold_[i];
-  cold.alone_time = cold.next_kick;
-  cold.alone = Next::kick;
+double IsaEngine::list_expiry(const Record& disk, const ColdRecord& cold) const {
   const Grid& grid = neighbours_.grid();
   const double dx = grid.offset(cold.centre.x, disk.x), dy = grid.offset(cold.centre.y, disk.y);
   const double vv = disk.vx * disk.vx + disk.vy * disk.vy;
+  if (vv == 0) return never;
   const double dv = dx * disk.vx + dy * disk.vy;
   const double square = dv * dv + vv * (leash_ * leash_ - dx * dx - dy * dy);
-  const double expiry = vv > 0 ? disk.time + (std::sqrt(square > 0 ? square : 0) - dv) / vv : never;
-  if (expiry < cold.alone_time) {
-    cold.alone_time = expiry;
-    cold.alone = Next::review;
-  }
-  // A transit costs a division; most often it is plain that it does not come first.
-  const double speed_x = std::fabs(disk.vx), speed_y = std::fabs(disk.vy);
-  const double speed = speed_x > speed_y ? speed_x : speed_y;
-  if (speed * (cold.alone_time - disk.time) < 0.999 * box_.transit) return;
-  if (const double transit = transit_time(disk, box_); transit < cold.alone_time) {
-    cold.alone_time = transit;
-    cold.alone = Next::transit;
-  }
+  return disk.time + (std::sqrt(square > 0 ? square : 0) - dv) / vv;
 }
 
 }  // namespace SANDGLASS_ISA

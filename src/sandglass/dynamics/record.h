@@ -17,8 +17,8 @@ inline namespace SANDGLASS_ISA {
 
 /// What comes next for a disk, in the order in which it is done at one time: a review (no event: its list expires, or
 /// the partner of a foreseen contact has found another, and its next contact must be looked for again), or the physical
-/// EventKind of the same name.
-enum class Next : std::uint8_t { review, contact, kick, transit };
+/// EventKind of the same name. The calendar has one entry for a contact, under the slot of one of the two disks.
+enum class Next : std::uint8_t { review, contact, contact_entered_by_partner, kick, transit };
 
 /// The hot half: the flight, and what comes next. A contact stands in the records of both its disks.
 struct alignas(64) Record {
@@ -54,16 +54,14 @@ struct Flight {
 }
 
 /// The cold half.
-struct alignas(64) ColdRecord {
+struct ColdRecord {
   FixedPoint centre;  ///< where the disk stood when its list was made
-  double alone_time;  ///< the earliest of next_kick, transit and list expiry
   double last_contact, next_kick;
   std::uint64_t kick_count;
   std::int32_t image_x, image_y;
   std::uint32_t id;
-  Next alone;  ///< which of them it is
 };
-static_assert(sizeof(ColdRecord) == 64);
+static_assert(sizeof(ColdRecord) == 48);
 
 }  // namespace SANDGLASS_ISA
 }  // namespace sandglass

@@ -46,6 +46,10 @@ inline Vector nearest_integer(Vector a) {
 }
 inline Vector choose(Mask m, Vector yes, Vector no) { return {_mm512_mask_blend_pd(m.bits, no.v, yes.v)}; }
 inline double smallest(Vector a) { return _mm512_reduce_min_pd(a.v); }
+inline Mask other_than(const std::uint32_t* entries, std::uint32_t value) {
+  const __m256i all = _mm256_load_si256(reinterpret_cast<const __m256i*>(entries));
+  return {_mm256_cmpneq_epi32_mask(all, _mm256_set1_epi32(static_cast<int>(value)))};
+}
 
 struct SmallestOf8 {
   double value;
@@ -109,6 +113,12 @@ inline Vector nearest_integer(Vector a) {
   return {_mm256_round_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
 }
 inline Vector choose(Mask m, Vector yes, Vector no) { return {_mm256_blendv_pd(no.v, yes.v, m.bits)}; }
+inline Mask other_than(const std::uint32_t* entries, std::uint32_t value) {
+  const __m128i all = _mm_load_si128(reinterpret_cast<const __m128i*>(entries));
+  const __m128i equal = _mm_cmpeq_epi32(all, _mm_set1_epi32(static_cast<int>(value)));
+  const __m256i wide = _mm256_cvtepi32_epi64(_mm_xor_si128(equal, _mm_set1_epi32(-1)));
+  return {_mm256_castsi256_pd(wide)};
+}
 inline double smallest(Vector a) {
   const __m128d half = _mm_min_pd(_mm256_castpd256_pd128(a.v), _mm256_extractf128_pd(a.v, 1));
   return _mm_cvtsd_f64(_mm_min_sd(half, _mm_unpackhi_pd(half, half)));
