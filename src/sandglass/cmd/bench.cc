@@ -120,7 +120,7 @@ void print_json(const Arguments& a, const Benchmark& b) {
                  {"cpu_seconds", b.cpu_seconds},
                  {"events", events},
                  {"bytes_per_disk", b.bytes_per_disk},
-                 {"running_bytes_per_disk", b.running_bytes_per_disk},
+                 {"peak_bytes_per_disk", b.peak_bytes_per_disk},
                  {"particles", a.particles},
                  {"packing_fraction", a.packing_fraction},
                  {"restitution", a.restitution},
@@ -160,7 +160,7 @@ void print_text(const Arguments& a, const Benchmark& b) {
     if (count > 0) line("  " + words, fmt::format("{:.4g}", count));
   }
   line("memory",
-       fmt::format("{:.0f} bytes per disk at most, {:.0f} while running", b.bytes_per_disk, b.running_bytes_per_disk));
+       fmt::format("{:.0f} bytes per disk while running, {:.0f} at most", b.bytes_per_disk, b.peak_bytes_per_disk));
   line("temperature at the end", fmt::format("{:.4f}", b.temperature));
   line("engine", fmt::format("sandglass {}, {}", version, Simulation::instruction_set()));
   line("state", b.state_hash);

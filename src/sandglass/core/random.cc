@@ -42,8 +42,11 @@ double portable_log(double u) {
   // s^2 < 0.0295 is cut after s^21: the next term is below 0.0295^11 / 23 < 1e-18 of the first.
   constexpr double ln2_high = 0x1.62e42fefa0000p-1;  // 40 bits, so that e * ln2_high is exact
   constexpr double ln2_low = 0x1.cf79abc9e3b3ap-40;
-  int exponent = 0;
-  double m = std::frexp(u, &exponent);
+  // A subnormal u has no leading bit to read: scale it up, exactly.
+  const bool subnormal = u < 0x1p-1022;
+  const auto bits = std::bit_cast<std::uint64_t>(subnormal ? u * 0x1p54 : u);
+  int exponent = static_cast<int>(bits >> 52) - 1022 - (subnormal ? 54 : 0);
+  double m = std::bit_cast<double>((bits & 0x000fffffffffffffu) | 0x3fe0000000000000u);  // in [1/2, 1)
   if (m < 0x1.6a09e667f3bcdp-1) {
     m *= 2;
     exponent -= 1;

@@ -63,6 +63,10 @@ class GrowingArray {
   GrowingArray() = default;
   explicit GrowingArray(std::size_t size) : storage_(size), size_(size) {}
 
+  void reserve(std::size_t size) {
+    if (size > storage_.size()) enlarge(size);
+  }
+
   [[gnu::always_inline]] void push_back(const T& value) {
     if (size_ == storage_.size()) [[unlikely]]
       grow();
@@ -82,8 +86,10 @@ class GrowingArray {
   T* end() { return storage_.begin() + size_; }
 
  private:
-  [[gnu::noinline]] void grow() {
-    Array<T> larger(size_ < 64 ? 64 : 2 * size_);
+  [[gnu::noinline]] void grow() { enlarge(size_ < 64 ? 64 : size_ + size_ / 2); }
+
+  [[gnu::noinline]] void enlarge(std::size_t size) {
+    Array<T> larger(size);
     for (std::size_t i = 0; i < size_; ++i) larger[i] = storage_[i];
     storage_ = std::move(larger);
   }

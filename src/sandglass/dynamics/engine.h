@@ -22,9 +22,12 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
-  /// Takes the records from state.disks, makes lists, predictions and calendar at state.now.
+  /// Takes the records from state.disks, which it frees, and makes lists, predictions and calendar at state.now.
   /// `order[slot]` is the id that goes into a slot. Returns the deepest overlap beyond rounding, if any.
   virtual OverlappingPair load(const std::uint32_t* order) = 0;
+
+  /// Frees lists and calendar, most of the memory; only to store can follow.
+  virtual void forget_what_comes() = 0;
 
   /// Writes the records by id.
   virtual void store(Disk* disks) const = 0;

@@ -24,6 +24,7 @@ class Grid {
     const double cells = std::floor(box_length / cell_size);
     side_ = cells < 1 ? 1 : cells > 32768 ? 32768 : static_cast<std::uint32_t>(cells);
     cells_ = GrowingArray<Cell>(std::size_t{side_} * side_);
+    cells_.reserve(cells_.size() + cells_.size() / 8 + 64);  // second lines are rare
     for (Cell& cell : cells_) cell = Cell();
   }
 

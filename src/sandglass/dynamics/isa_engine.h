@@ -28,6 +28,7 @@ class IsaEngine final : public Engine {
   }
 
   OverlappingPair load(const std::uint32_t* order) override;
+  void forget_what_comes() override;
   void store(Disk* disks) const override;
   void run(double end) override;
   void make_frame(double* x, double* y, double* vx, double* vy) const override;

@@ -34,6 +34,8 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
                 .image_y = disk.image_y,
                 .id = order[i]};
   }
+  state_.disks = std::vector<Disk>();  // gives the memory back
+
   OverlappingPair deepest;
   for (std::uint32_t i = 0; i < size_; ++i) {
     neighbours_.enter(i, cold_[i].centre, &records_[0]);
@@ -48,7 +50,7 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
   // First predictions into a calendar where nearly all is far ahead, only to learn how far that is.
   calendar_ = Calendar(state_.now, 1e-12 * state_.epoch_length, 0);
   for (std::uint32_t i = 0; i < size_; ++i) predict(i);
-  const double events = tuning_.bucket_events > 0 ? tuning_.bucket_events : 3;
+  const double events = tuning_.bucket_events > 0 ? tuning_.bucket_events : 1.5;
   calendar_ = Calendar(state_.now, events * mean_lead() / static_cast<double>(size_), size_);
   for (std::uint32_t i = 0; i < size_; ++i)
     if (records_[i].next_time < never) calendar_.push(records_[i].next_time, i);
@@ -84,6 +86,11 @@ double IsaEngine::mean_lead() const {
     (2 * below < all ? low : high) = middle;
   }
   return std::fmax(high, 1e-9 * state_.epoch_length) / 0.69;
+}
+
+void IsaEngine::forget_what_comes() {
+  neighbours_ = Neighbours();
+  calendar_ = Calendar();
 }
 
 void IsaEngine::store(Disk* disks) const {

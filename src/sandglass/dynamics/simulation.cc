@@ -59,7 +59,6 @@ struct Simulation::Run {
   std::string load() {
     size = state.size();
     const OverlappingPair overlap = engine->load(spatial_order(state).data());
-    state.disks = {};  // give the memory back
     if (overlap.first == no_disk) return {};
     return "disks " + std::to_string(overlap.first) + " and " + std::to_string(overlap.second) + " overlap by " +
            std::to_string(overlap.depth) + " R_s";
@@ -93,6 +92,7 @@ void Simulation::run_until(double end) {
       return;
     }
     run_->engine->run(state.epoch_length);
+    run_->engine->forget_what_comes();
     run_->store(state);
     pass_epoch(state);
     if (const std::string overlap = run_->load(); !overlap.empty())
@@ -106,10 +106,15 @@ double Simulation::time() const { return run_->state.time(); }
 const Tally& Simulation::tally() const { return run_->state.tally; }
 std::size_t Simulation::size() const { return run_->size; }
 
-State Simulation::state() const {
+State Simulation::state() const& {
   State copy = run_->state;
   run_->store(copy);
   return copy;
+}
+
+State Simulation::state() && {
+  run_->engine->forget_what_comes();
+  return static_cast<const Simulation&>(*this).state();
 }
 
 void Simulation::make_frame(Frame& frame) const {

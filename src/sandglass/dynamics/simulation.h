@@ -34,8 +34,10 @@ class Simulation {
   [[nodiscard]] const Tally& tally() const;
   [[nodiscard]] std::size_t size() const;
 
-  /// A copy of the run at this moment; a new Simulation made from it goes on with the same bits.
-  [[nodiscard]] State state() const;
+  /// A copy of the run at this moment; a new Simulation made from it goes on with the same bits. A Simulation that is
+  /// no longer needed (std::move) frees its tables first.
+  [[nodiscard]] State state() const&;
+  [[nodiscard]] State state() &&;
   void make_frame(Frame& frame) const;
 
   /// From now on appends every physical event to `log` (for tests; nullptr stops it).

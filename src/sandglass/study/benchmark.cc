@@ -117,7 +117,7 @@ void measure(Simulation& simulation, const BenchmarkPlan& plan, double collision
     const double middle = start + static_cast<double>(repeat) * evidence.interval_length + stretch / 2;
     Work work;
     work.run_until(simulation, middle);
-    if (repeat == 0) result.running_bytes_per_disk = resident_bytes("VmRSS") / disks;
+    if (repeat == 0) result.bytes_per_disk = resident_bytes("VmRSS") / disks;
     for (std::uint64_t i = 1; i <= frames; ++i) {
       simulation.run_until(middle + static_cast<double>(i) / collision_rate);
       simulation.make_frame(frame);
@@ -201,17 +201,18 @@ Benchmark run_benchmark(const BenchmarkPlan& plan, const Progress& progress) {
   const double factor = compressibility_factor(state.mixture, config.system.big_fraction, evidence.packing_fraction);
   ContactRate contacts(population_of(state), contact_range(factor, evidence.restitution));
 
+  evidence.start = state.tally;
+  evidence.start_energy = kinetic_energy(state);
   Simulation simulation(std::move(state));
   const double rate = age_disks(simulation, plan.age, beat_of(config), progress);
   result.aged = collisions_per_disk(simulation);
-  evidence.start_energy = kinetic_energy(simulation.state());
   const Simulation::Bookkeeping before = simulation.bookkeeping();
   measure(simulation, plan, rate, contacts, evidence, result, progress);
   result.events = counts_between(evidence.boundaries.front(), evidence.boundaries.back());
   result.bookkeeping = difference(before, simulation.bookkeeping());
 
-  State end = simulation.state();
-  result.bytes_per_disk = resident_bytes("VmHWM") / static_cast<double>(end.size());
+  State end = std::move(simulation).state();
+  result.peak_bytes_per_disk = resident_bytes("VmHWM") / static_cast<double>(end.size());
   result.state_hash = state_hash(end);
   result.kick_frequency = end.drive.frequency;
   result.kick_amplitude = end.drive.amplitude;

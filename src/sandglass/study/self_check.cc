@@ -74,7 +74,7 @@ std::vector<CheckedFigure> check_rates(const Evidence& evidence) {
 /// Injected minus dissipated minus gained, over what was turned over. Each change of a velocity rounds by 2^-53: a
 /// random walk of 10^8 of them makes 1e-12.
 CheckedFigure check_energy(const Evidence& evidence) {
-  const Tally &first = evidence.boundaries.front(), &last = evidence.boundaries.back();
+  const Tally &first = evidence.start, &last = evidence.boundaries.back();
   const double injected = difference(first.injected, last.injected);
   const double missing =
       injected - difference(first.dissipated, last.dissipated) - (evidence.end_energy - evidence.start_energy);

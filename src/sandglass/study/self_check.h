@@ -25,7 +25,8 @@ struct Evidence {
   double packing_fraction = 0, restitution = 1;
   double interval_length = 0;               ///< physical time
   std::vector<Tally> boundaries;            ///< at the ends of the intervals, one more than there are intervals
-  double start_energy = 0, end_energy = 0;  ///< kinetic
+  Tally start;                              ///< before anything moved
+  double start_energy = 0, end_energy = 0;  ///< kinetic, there and at the end
   std::array<Estimate, 3> foretold{};       ///< collisions per time ss, sb, bb, from frames (ContactRate)
   double deepest_overlap = 0;               ///< at the end, in contact distances
 };
