@@ -47,10 +47,10 @@ double portable_log(double u) {
   const auto bits = std::bit_cast<std::uint64_t>(subnormal ? u * 0x1p54 : u);
   int exponent = static_cast<int>(bits >> 52) - 1022 - (subnormal ? 54 : 0);
   double m = std::bit_cast<double>((bits & 0x000fffffffffffffu) | 0x3fe0000000000000u);  // in [1/2, 1)
-  if (m < 0x1.6a09e667f3bcdp-1) {
-    m *= 2;
-    exponent -= 1;
-  }
+  const bool low = m < 0x1.6a09e667f3bcdp-1;  // no branches: these numbers are random
+  constexpr double factor[2] = {1, 2};
+  m *= factor[low];
+  exponent -= low;
   const double f = m - 1;
   const double s = f / (m + 1);
   const double s2 = s * s;
@@ -72,16 +72,10 @@ std::array<double, 2> portable_sincos_turns(double turns) {
   for (int k = 14; k >= 2; k -= 2) cosine = inverse_factorial[static_cast<std::size_t>(k)] - r2 * cosine;
   sine = r - r * r2 * sine;
   cosine = 1 - r2 * cosine;
-  switch (static_cast<std::int64_t>(quarters) & 3) {
-    case 0:
-      return {sine, cosine};
-    case 1:
-      return {cosine, -sine};
-    case 2:
-      return {-sine, -cosine};
-    default:
-      return {-cosine, sine};
-  }
+  const double values[2] = {sine, cosine};
+  constexpr double sine_sign[4] = {1, 1, -1, -1}, cosine_sign[4] = {1, -1, -1, 1};
+  const auto quarter = static_cast<std::uint64_t>(static_cast<std::int64_t>(quarters)) & 3;
+  return {sine_sign[quarter] * values[quarter & 1], cosine_sign[quarter] * values[~quarter & 1]};
 }
 
 }  // namespace sandglass

@@ -54,30 +54,26 @@ class Calendar {
                                            Soon&& soon) {
     for (;;) {
       Line& line = lines_[bucket_ & fine_mask_];
-      const auto [soonest, lanes] = smallest_of_8(line.time);
-      if (soonest == nothing || line.more != 0 || (lanes & (lanes - 1)) != 0) [[unlikely]] {
-        // the bucket is empty, or has several lines, or two events at the same time
-        if (line.more == 0 && soonest == nothing) {
-          line.count = 0;
-          if (bucket_ >= bucket_of(limit)) return no_disk;
-          open_next_bucket(records, ahead, soon);
-          continue;
-        }
+      auto [soonest, lanes] = smallest_of_8(line.time);
+      if (line.more != 0) [[unlikely]] {  // rare: the bucket has several lines
         const Place place = earliest_of_lines(records, before);
-        if (place.time > limit && place.time < nothing) return no_disk;
-        if (place.time == nothing) {
-          lines_[bucket_ & fine_mask_] = Line();
-          if (bucket_ >= bucket_of(limit)) return no_disk;
-          open_next_bucket(records, ahead, soon);
-          continue;
+        if (place.time < nothing) {
+          if (place.time > limit) return no_disk;
+          lines_[place.line].time[place.lane] = nothing;
+          return lines_[place.line].slot[place.lane];
         }
-        lines_[place.line].time[place.lane] = nothing;
-        const std::uint32_t slot = lines_[place.line].slot[place.lane];
-        if (states(records[slot], place.time)) return slot;
+        line = Line();
+        soonest = nothing;
+      }
+      if (soonest == nothing) {
+        line.count = 0;
+        if (bucket_ >= bucket_of(limit)) return no_disk;
+        open_next_bucket(records, ahead, soon);
         continue;
       }
       if (soonest > limit) return no_disk;
-      const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
+      auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
+      if ((lanes & (lanes - 1)) != 0) lane = first_of_ties(line, lanes, records, before);
       line.time[lane] = nothing;
       const std::uint32_t slot = line.slot[lane];
       if (states(records[slot], soonest)) [[likely]]
@@ -178,6 +174,23 @@ class Calendar {
         lines_[index].more = more;
       }
     }
+  }
+
+  /// Of entries at the same time, the first in order. Most often they are one entry twice (a disk may have found again
+  /// and again that its kick comes next): all but one are struck out.
+  template <class Before>
+  [[gnu::always_inline]] unsigned first_of_ties(Line& line, unsigned lanes, const Record* records,
+                                                Before&& before) const {
+    auto best = static_cast<unsigned>(__builtin_ctz(lanes));
+    while ((lanes &= lanes - 1) != 0) {
+      const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
+      const std::uint32_t slot = line.slot[lane];
+      if (slot == line.slot[best])
+        line.time[lane] = nothing;
+      else if (const double time = line.time[lane]; states(records[slot], time))
+        if (!states(records[line.slot[best]], time) || before(slot, line.slot[best])) best = lane;
+    }
+    return best;
   }
 
   template <class Before>
