@@ -298,15 +298,15 @@ class Calendar {
   }
 
   double start_ = 0, inverse_width_ = 1;
-  bool out_of_cache_ = false;                      // whether fetching ahead pays
-  unsigned fine_bits_ = 4;                         // a window has 2^fine_bits_ fine buckets
-  std::uint64_t fine_mask_ = 0, ring_mask_ = 0;    // number of fine buckets in a window, of windows in the ring; less 1
-  std::int64_t bucket_ = 0;                        // the open fine bucket, counted from start_
-  GrowingArray<Line> lines_;                       // the fine buckets of the open window; then second lines
-  Array<std::uint32_t> chains_;                    // the ring of windows, then beyond(): where each ends
-  std::uint32_t free_ = none;                      // chain of unused chunks
+  bool out_of_cache_ = false;                    // whether fetching ahead pays
+  unsigned fine_bits_ = 4;                       // a window has 2^fine_bits_ fine buckets
+  std::uint64_t fine_mask_ = 0, ring_mask_ = 0;  // number of fine buckets in a window, of windows in the ring; less 1
+  std::int64_t bucket_ = 0;                      // the open fine bucket, counted from start_
+  GrowingArray<Line> lines_;                     // the fine buckets of the open window; then second lines
+  Array<std::uint32_t> chains_;                  // the ring of windows, then beyond(): where each ends
+  std::uint32_t free_ = none;                    // chain of unused chunks
   GrowingArray<Chunk> chunks_;
-  std::uint32_t fetching_ = no_chunks;             // where fetch_next_window has come to
+  std::uint32_t fetching_ = no_chunks;  // where fetch_next_window has come to
 };
 
 }  // namespace SANDGLASS_ISA

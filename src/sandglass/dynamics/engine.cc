@@ -2,38 +2,15 @@
 //  1. A record is as its disk's own last contact, kick, transit or epoch left it. Nothing else writes to its flight.
 //  2. A foreseen contact is mutual: both disks name each other, with the same time.
 //  3. No disk's next event comes later, in canonical order, than its own kick, its transit or the expiry of its list;
-//  and
-//     no contact of a listed pair, as computed from the records as they are now, comes before the next events of both
-//     its disks. So the earliest next event of all is the earliest event there is.
-//  4. Every finite next event has an entry in the calendar, a contact at least one for the pair.
+//     and no contact of a listed pair, as computed from the records as they are now, comes before the next events of
+//     both its disks. So the earliest next event of all, unless it is a review, is the earliest event there is.
+//  4. Every finite next event has an entry in the calendar, a contact one for the pair.
 //  5. Two disks that overlap or touch are in each other's lists; lists are symmetric.
-#include <utility>
-
 #include "sandglass/dynamics/epoch.h"
 #include "sandglass/dynamics/isa_engine.h"
 
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
-
-/// Brings what an event of disk i will need nearer to the processor: first its own lists and cold record, and its
-/// partner's; then, through the lists, the neighbours.
-void IsaEngine::fetch_disk(std::uint32_t i) const {
-  const std::uint32_t partner = records_[i].partner;
-  prefetch(neighbours_.list(i));
-  prefetch(&cold_[i]);
-  const std::uint32_t j = partner == no_disk ? i : partner;
-  prefetch(neighbours_.list(j));
-  prefetch(&cold_[j]);
-}
-
-void IsaEngine::fetch_neighbours(std::uint32_t i) const {
-  const std::uint32_t partner = records_[i].partner;
-  const std::uint32_t* list = neighbours_.list(i);
-  for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
-  if (partner == no_disk) return;
-  list = neighbours_.list(partner);
-  for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
-}
 
 void IsaEngine::run(double end) {
   auto in_order = [this](std::uint32_t a, std::uint32_t b) { return before(a, b); };
@@ -64,6 +41,26 @@ void IsaEngine::run(double end) {
   state_.now = end;
 }
 
+/// Brings what an event of disk i will need nearer to the processor: first its own lists and cold record, and its
+/// partner's; then, through the lists, the neighbours.
+void IsaEngine::fetch_disk(std::uint32_t i) const {
+  const std::uint32_t partner = records_[i].partner;
+  prefetch(neighbours_.list(i));
+  prefetch(&cold_[i]);
+  const std::uint32_t j = partner == no_disk ? i : partner;
+  prefetch(neighbours_.list(j));
+  prefetch(&cold_[j]);
+}
+
+void IsaEngine::fetch_neighbours(std::uint32_t i) const {
+  const std::uint32_t partner = records_[i].partner;
+  const std::uint32_t* list = neighbours_.list(i);
+  for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
+  if (partner == no_disk) return;
+  list = neighbours_.list(partner);
+  for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
+}
+
 /// In an inelastic collapse infinitely many collisions take place in a finite time, and the loop would never end. After
 /// 64 events per disk (and a million at least) time must have gone on by more than a billionth of a mean free time.
 void IsaEngine::check_progress(double t) {
@@ -73,7 +70,8 @@ void IsaEngine::check_progress(double t) {
 }
 
 /// The collision of two disks at time t, worked out but not carried out.
-[[gnu::always_inline]] inline IsaEngine::Collision IsaEngine::collision(std::uint32_t i, std::uint32_t j, double t) const {
+[[gnu::always_inline]] inline IsaEngine::Collision IsaEngine::collision(std::uint32_t i, std::uint32_t j,
+                                                                        double t) const {
   const ColdRecord &cold_a = cold_[i], &cold_b = cold_[j];
   Collision result{i,
                    j,
@@ -189,7 +187,7 @@ void IsaEngine::remake_list(std::uint32_t i, double t) {
   cold_[i].centre = centre;
 }
 
-/// Canonical order of two disks' next events at one time: kind, then ids. 
+/// Canonical order of two disks' next events at one time: kind, then ids.
 bool IsaEngine::before(std::uint32_t a, std::uint32_t b) const {
   const Record &disk_a = records_[a], &disk_b = records_[b];
   auto kind = [](Next next) { return next == Next::contact_entered_by_partner ? Next::contact : next; };

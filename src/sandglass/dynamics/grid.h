@@ -121,14 +121,14 @@ class Grid {
     [[gnu::always_inline]] std::uint32_t collect(const Cell& cell, std::uint32_t* out) const {
 #if defined(SANDGLASS_SIMD) && defined(__AVX512DQ__)
       const __m512i line = _mm512_load_si512(&cell);
-      const __m512i origin = _mm512_mask_set1_epi32(_mm512_set1_epi32(static_cast<int>(at.x)), 0x3e0,
-                                                    static_cast<int>(at.y));
+      const __m512i origin =
+          _mm512_mask_set1_epi32(_mm512_set1_epi32(static_cast<int>(at.x)), 0x3e0, static_cast<int>(at.y));
       const __m512 difference = _mm512_cvtepi32_ps(_mm512_sub_epi32(line, origin));
       const __m512 square = _mm512_mul_ps(difference, difference);
       const __m512i y_square = _mm512_alignr_epi32(_mm512_castps_si512(square), _mm512_castps_si512(square), 5);
       const __m512i name = _mm512_alignr_epi32(line, line, 10);
-      const __m512 limit = _mm512_mask_blend_ps(_mm512_movepi32_mask(name), _mm512_set1_ps(small_squared),
-                                                _mm512_set1_ps(big_squared));
+      const __m512 limit =
+          _mm512_mask_blend_ps(_mm512_movepi32_mask(name), _mm512_set1_ps(small_squared), _mm512_set1_ps(big_squared));
       const __m512 distance = _mm512_add_ps(square, _mm512_castsi512_ps(y_square));
       const __mmask16 taken = _mm512_mask_cmpneq_epi32_mask(0x1f, name, _mm512_set1_epi32(-1));
       const __mmask16 inside = _mm512_mask_cmp_ps_mask(taken, distance, limit, _CMP_LT_OQ);
@@ -182,9 +182,9 @@ class Grid {
         const Cell* cell = &cells_[std::size_t{row} * side_ + column];
         visit(*cell);
         while (cell->more != 0) [[unlikely]] {
-          cell = &cells_[cell->more];
-          visit(*cell);
-        }
+            cell = &cells_[cell->more];
+            visit(*cell);
+          }
         if (++column == side_) column = 0;
       }
       column = first_column;

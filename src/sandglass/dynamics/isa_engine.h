@@ -34,7 +34,6 @@ class IsaEngine final : public Engine {
   void make_frame(double* x, double* y, double* vx, double* vy) const override;
 
  private:
-  void on_contact(std::uint32_t i, std::uint32_t j, double t);
   struct Image {
     std::int32_t x, y;
   };
@@ -45,36 +44,37 @@ class IsaEngine final : public Engine {
     Impact impact;
     bool elastic;  // by the TC model
   };
-  [[nodiscard]] Collision collision(std::uint32_t i, std::uint32_t j, double t) const;
-  void carry_out(const Collision& result);
+  struct Lanes {  // the contacts of one block of a list
+    double soonest;
+    unsigned all, strict;  // lanes with the soonest time; those that come strictly before what the other has next
+  };
+  struct Foreseen {
+    double time;
+    std::uint32_t partner;
+  };
+
+  void on_contact(std::uint32_t i, std::uint32_t j, double t);
   void on_kick(std::uint32_t i, double t);
   void on_transit(std::uint32_t i, double t);
   void on_review(std::uint32_t i, double t);
+  [[nodiscard]] Collision collision(std::uint32_t i, std::uint32_t j, double t) const;
+  void carry_out(const Collision& result);
   double push(std::uint32_t i, double t, double px, double py);
   void remake_list(std::uint32_t i, double t);
-
   void check_progress(double t);
   void fetch_disk(std::uint32_t i) const;
   void fetch_neighbours(std::uint32_t i) const;
 
   void predict(std::uint32_t i);
-  struct Lanes {  // the contacts of one block of a list
-    double soonest;
-    unsigned all, strict;  // lanes with the soonest time; those that come strictly before what the other has next
-  };
   void settle(std::uint32_t i, Lanes begun);
-  struct Foreseen {
-    double time;
-    std::uint32_t partner;
-  };
   void schedule(std::uint32_t i, Foreseen contact);
+  void part(std::uint32_t i);
   [[nodiscard]] Foreseen earliest_contact(std::uint32_t i) const;
   [[nodiscard]] Foreseen earliest_contact_by_rule(std::uint32_t i) const;
   [[nodiscard]] Lanes contacts_of_block(const Flight& disk, double disk_radius, const std::uint32_t* list,
                                         std::uint32_t except) const;
   [[nodiscard]] Lanes first_contacts(std::uint32_t i, const Flight& flight, std::uint32_t except) const;
   [[nodiscard]] Foreseen earliest_of_blocks(std::uint32_t i, Lanes lanes) const;
-  void part(std::uint32_t i);
   [[nodiscard]] bool within_leash(const Record& disk, const ColdRecord& cold, double t) const;
   [[nodiscard]] double list_expiry(const Record& disk, const ColdRecord& cold) const;
   [[nodiscard]] bool comes_before_next_of(const Record& other, double t, std::uint32_t i) const;
@@ -103,7 +103,7 @@ class IsaEngine final : public Engine {
   Calendar calendar_;
   std::uint64_t until_stall_check_ = 1;
   double progress_time_ = -never;
-  GrowingArray<DiskName> candidates_;    // possible partners of a kick
+  GrowingArray<DiskName> candidates_;  // possible partners of a kick
 };
 
 }  // namespace SANDGLASS_ISA

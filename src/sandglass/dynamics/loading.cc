@@ -21,7 +21,7 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
   leash_ = neighbours_.leash();
   for (std::uint32_t i = 0; i < size_; ++i) {
     const Disk& disk = disks[order[i]];
-    records_[i] = {disk.x,  disk.y,        disk.vx,      disk.vy, disk.time, never, state_.mixture.radius[disk.species],
+    records_[i] = {disk.x,  disk.y,       disk.vx,      disk.vy, disk.time, never, state_.mixture.radius[disk.species],
                    no_disk, Next::review, disk.species, 0};
     Record now = records_[i];
     std::int32_t image_x = 0, image_y = 0;
