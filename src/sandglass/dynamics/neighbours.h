@@ -59,10 +59,9 @@ class Neighbours {
     grid_.displace(slot, old, records[slot].species);
     const Grid::Slots found = find(at, records[slot]);
     const std::uint32_t before = records[slot].neighbour_count;
-    while (found.count > stride_ || before + found.count > changes_.size()) [[unlikely]] {
-        if (found.count > stride_) widen();
-        if (before + found.count > changes_.size()) changes_ = Array<std::uint32_t>(2 * (before + found.count));
-      }
+    while (found.count > stride_) [[unlikely]] widen();
+    if (before + found.count > changes_.size()) [[unlikely]]
+      changes_ = Array<std::uint32_t>(2 * (before + found.count));
     // Most stay. Who comes or goes is gathered first, without branches, since they cannot be foretold.
     std::uint32_t* const mine = &lists_[std::size_t{slot} * stride_];
     std::uint32_t came = 0, gone = 0;

@@ -2,9 +2,32 @@
 #include <cmath>
 
 #include "sandglass/dynamics/isa_engine.h"
+#include "sandglass/dynamics/simd.h"
 
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
+
+#ifdef SANDGLASS_SIMD
+/// surface_gap to one block of a list, lane by lane, the same operations in the same order: the smallest, and where.
+SmallestOf8 IsaEngine::smallest_gap(const Record& disk, const std::uint32_t* list, double t) const {
+  const double flight = t - disk.time;
+  const Vector x = Vector::all(std::fma(disk.vx, flight, disk.x)), y = Vector::all(std::fma(disk.vy, flight, disk.y));
+  const Vector length = Vector::all(box_.length), inverse = Vector::all(box_.inverse);
+  auto nearest = [&](Vector difference) { return fnma(length, nearest_integer(difference * inverse), difference); };
+  const Record* rows[Vector::width];
+  for (std::uint32_t n = 0; n < Vector::width; ++n) rows[n] = &records_[list[n]];
+  Vector other[8];  // columns of the record: x, y, vx, vy, time, next_time, radius
+  load_columns(rows, other);
+  const Vector other_flight = Vector::all(t) - other[4];
+  const Vector rx = nearest(fma(other[2], other_flight, other[0]) - x);
+  const Vector ry = nearest(fma(other[3], other_flight, other[1]) - y);
+  const Vector gap = sqrt(fma(rx, rx, ry * ry)) - (Vector::all(disk.radius) + other[6]);
+  const Mask somebody = Vector::all(-never) < other[5];  // not the record that fills up lists
+  const Vector candidate = choose(somebody, gap, Vector::all(never));
+  const double smallest_of_all = smallest(candidate);
+  return {smallest_of_all, (candidate == Vector::all(smallest_of_all)).lanes()};
+}
+#endif
 
 /// The disk with the smallest gap of surfaces to disk i at time t; the smaller id at equal gaps.
 std::uint32_t IsaEngine::nearest_partner(std::uint32_t i, double t) {
@@ -20,7 +43,18 @@ std::uint32_t IsaEngine::nearest_partner(std::uint32_t i, double t) {
     }
   };
   const std::uint32_t* const list = neighbours_.list(i);
+#ifdef SANDGLASS_SIMD
+  for (std::uint32_t first = 0; first < disk.neighbour_count; first += Vector::width) {
+    const auto [gap, lanes] = smallest_gap(disk, list + first, t);
+    if (gap > best_gap) continue;
+    if (gap < best_gap && (lanes & (lanes - 1)) == 0) [[likely]]
+      best_gap = gap, best = list[first + static_cast<unsigned>(__builtin_ctz(lanes))];
+    else  // ties are for the rule
+      for (std::uint32_t n = first; n < first + Vector::width && n < disk.neighbour_count; ++n) visit(list[n]);
+  }
+#else
   for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) visit(list[n]);
+#endif
 
   // Unlisted disks have list centres at least R_i + R_j + 2 leash from ours; each of the two has moved from its own.
   const double x = std::fma(disk.vx, t - disk.time, disk.x), y = std::fma(disk.vy, t - disk.time, disk.y);

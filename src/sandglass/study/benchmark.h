@@ -35,8 +35,8 @@ struct Benchmark {
   Tally events;                         ///< counts; the sums are left out
   Simulation::Bookkeeping bookkeeping;  ///< what the engine did besides
   double temperature = 0;               ///< at the end
-  double bytes_per_disk = 0;       ///< memory that the process holds while it runs
-  double peak_bytes_per_disk = 0;  ///< the most it ever held, preparation and self-check included
+  double bytes_per_disk = 0;            ///< memory that the process holds while it runs
+  double peak_bytes_per_disk = 0;       ///< the most it ever held, preparation and self-check included
   std::string state_hash;
   std::vector<CheckedFigure> check;
 };
