@@ -34,6 +34,8 @@ class IsaEngine final : public Engine {
   void make_frame(double* x, double* y, double* vx, double* vy) const override;
 
  private:
+  friend struct PredictionPerf;  // measures the search (prediction.perf.cc)
+
   struct Image {
     std::int32_t x, y;
   };
