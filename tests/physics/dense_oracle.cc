@@ -20,7 +20,7 @@ void compare(const State& start, double end, const std::string& name) {
   reference.set_event_log(&expected);
   simulation.run_until(end / 3);
   State cut = simulation.state();
-  simulation = Simulation(std::move(cut), {.skin = 0.4, .cell_size = 5, .bucket_events = 20});
+  simulation = Simulation(std::move(cut), {.skin = 0.4, .cell_size = 5, .window_events = 20});
   simulation.set_event_log(&events);
   simulation.run_until(end);
   reference.run_until(end);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "sandglass/dynamics/array.h"
 #include "sandglass/dynamics/record.h"
@@ -13,89 +14,90 @@
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
-/// A lazy two-level bucket calendar. Time is cut into fine buckets of a few events, and into windows of many fine
-/// buckets; a ring of windows lies ahead. An entry of a later window is only appended to that window's chain of
-/// chunks; when a window opens, its entries are dealt into fine buckets; the open bucket is searched for its earliest
-/// entry. Nothing is moved or removed when a prediction changes: an entry counts only while it still states its disk's
-/// next_time.
+/// Time is cut into windows of some hundred events. An entry of a later window is only appended to that window's chain
+/// of chunks; when a window opens, its entries are sorted, and are then taken one after the other. What is entered into
+/// the window while it is open, a small part, is kept unsorted beside them (late). Nothing is moved or removed when a
+/// prediction changes: an entry counts only while it still states its disk's next_time.
+/// Nearly all branches here go the same way nearly always; those of a heap, or of a bucket of a few events, do not, and
+/// that costs more than the work.
 class Calendar {
  public:
-  /// Fine buckets are `bucket_width` long, counted from time `start`; about `size` entries live at a time.
-  Calendar(double start, double bucket_width, std::size_t size) : start_(start), inverse_width_(1 / bucket_width) {
-    while (fine_bits_ < 8 && (std::size_t{1} << 2 * fine_bits_) < size) ++fine_bits_;
-    unsigned ring_bits = fine_bits_;
-    while (ring_bits < 16 && (std::size_t{1} << (fine_bits_ + ring_bits)) < size) ++ring_bits;
-    fine_mask_ = (std::uint64_t{1} << fine_bits_) - 1;
-    out_of_cache_ = size > 20000;
-    ring_mask_ = (std::uint64_t{1} << ring_bits) - 1;
-    lines_ = GrowingArray<Line>(fine_mask_ + 1);
-    for (Line& line : lines_) line = Line();
-    chains_ = Array<std::uint32_t>(ring_mask_ + 2);
+  /// `size` entries live at a time, `lead` ahead in the mean; a window is `window` long, from time `start` on.
+  Calendar(double start, double lead, double window, std::size_t size)
+      : start_(start), inverse_width_(1 / window), out_of_cache_(size > 20000) {
+    while (keys_ < 16384 && static_cast<double>(keys_) * lead < 4 * static_cast<double>(size) * window) keys_ *= 2;
+    std::size_t windows = 16;
+    while (windows < 65536 && static_cast<double>(windows) * window < 4 * lead) windows *= 2;
+    ring_mask_ = static_cast<std::int64_t>(windows) - 1;
+    chains_ = Array<std::uint32_t>(windows + 1);
     for (std::uint32_t& chain : chains_) chain = no_chunks;
+    firsts_ = Array<std::uint32_t>(keys_ + 1);
+    make_room(64);
   }
   Calendar() = default;
 
   [[gnu::always_inline]] void push(double time, std::uint32_t slot) {
-    std::int64_t bucket = bucket_of(time);
-    if (bucket < bucket_) bucket = bucket_;  // at a time already passed by rounding
-    const std::int64_t windows_ahead = (bucket >> fine_bits_) - (bucket_ >> fine_bits_);
-    if (windows_ahead == 0)
-      enter(bucket, time, slot, true);
+    const std::int64_t window = window_of(time), ahead = window - window_;
+    if (ahead <= 0)
+      enter_late(time, slot);
     else
-      append(windows_ahead <= static_cast<std::int64_t>(ring_mask_) ? (bucket >> fine_bits_) & ring_mask_ : beyond(),
-             time, slot);
+      append(ahead <= ring_mask_ ? static_cast<std::size_t>(window & ring_mask_) : beyond(), time, slot);
   }
 
   /// Takes out and returns the slot whose event is the earliest and not after `limit`; no_disk if there is none.
-  /// `before(a, b)` orders two slots whose events are at the same time; `ahead(slot)` and `soon(slot)` are told whose
-  /// events come about ten and five buckets later.
+  /// `before(a, b)` orders two slots whose events are at the same time; where the tables do not fit into the cache,
+  /// `ahead(slot)` and `soon(slot)` are told whose events come some twenty and ten events later.
   template <class Before, class Ahead, class Soon>
   [[gnu::always_inline]] std::uint32_t pop(const Record* records, double limit, Before&& before, Ahead&& ahead,
                                            Soon&& soon) {
     for (;;) {
-      Line& line = lines_[bucket_ & fine_mask_];
-      auto [soonest, lanes] = smallest_of_8(line.time);
-      if (line.more != 0) [[unlikely]] {  // rare: the bucket has several lines
-        const Place place = earliest_of_lines(records, before);
-        if (place.time < nothing) {
-          if (place.time > limit) return no_disk;
-          lines_[place.line].time[place.lane] = nothing;
-          return lines_[place.line].slot[place.lane];
+      const Entry next = sorted_[head_];
+      if (late_soonest_ <= next.time || next.time == sorted_[head_ + 1].time) [[unlikely]] {
+        if (late_soonest_ == nothing && next.time == nothing) {
+          if (window_ >= window_of(limit)) return no_disk;
+          open_next_window(records);
+        } else if (late_soonest_ > next.time && next.slot == sorted_[head_ + 1].slot) {
+          ++head_;  // one entry twice: a disk may have found again and again that its kick comes next
+        } else if (const Choice choice = first_of_ties(records, before); choice.time > limit) {
+          return no_disk;
+        } else if (take(choice); states(records[choice.slot], choice.time)) {
+          return choice.slot;
         }
-        line = Line();
-        soonest = nothing;
-      }
-      if (soonest == nothing) {
-        line.count = 0;
-        if (bucket_ >= bucket_of(limit)) return no_disk;
-        open_next_bucket(records, ahead, soon);
         continue;
       }
-      if (soonest > limit) return no_disk;
-      auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
-      if ((lanes & (lanes - 1)) != 0) lane = first_of_ties(line, lanes, records, before);
-      line.time[lane] = nothing;
-      const std::uint32_t slot = line.slot[lane];
-      if (states(records[slot], soonest)) [[likely]]
-        return slot;
+      if (next.time > limit) return no_disk;
+      ++head_;
+      if (out_of_cache_) {
+        ahead(sorted_[head_ + 20].slot);
+        soon(sorted_[head_ + 10].slot);
+        fetch_next_window(records);
+      }
+      if (states(records[next.slot], next.time)) [[likely]]
+        return next.slot;
     }
   }
 
   [[nodiscard]] std::size_t bytes() const {
-    return lines_.capacity_bytes() + chains_.bytes() + chunks_.capacity_bytes();
+    return sorted_.bytes() + unsorted_.bytes() + chains_.bytes() + chunks_.capacity_bytes();
   }
 
  private:
   static constexpr std::uint32_t none = 0xffffffffu;
-  static constexpr std::int64_t ahead_buckets = 10, soon_buckets = 5;
   static constexpr double nothing = std::numeric_limits<double>::infinity();
+  static constexpr std::size_t beyond_end = 32;  // entries for nobody after the sorted ones
 
-  /// Entries of a fine bucket of the open window; lanes without one hold the time `nothing`.
-  struct alignas(64) Line {
-    double time[8] = {nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing};
-    std::uint32_t slot[8] = {};
-    std::uint32_t count = 0;  // lanes used since the bucket was empty
-    std::uint32_t more = 0;   // index of the bucket's next line, or 0
+  struct Entry {
+    double time;
+    std::uint32_t slot;
+    std::uint32_t key;  // place in the open window, in 1/keys_ of it
+  };
+
+  /// An entry of the open window: sorted_[place], or of the late ones.
+  struct Choice {
+    double time = nothing;
+    std::uint32_t slot = no_disk;
+    bool late = false;
+    std::size_t place = 0;
   };
 
   /// A run of entries of one later window. Packed, and how far it is full stands elsewhere (chains_): appending writes
@@ -127,14 +129,9 @@ class Calendar {
   static std::uint32_t chunk_of(std::uint32_t end) { return end >> 5 == none >> 5 ? none : end >> 5; }
   static std::uint32_t count_of(std::uint32_t end) { return end & 31; }
 
-  struct Place {
-    double time = nothing;
-    std::size_t line = 0, lane = 0;
-  };
-
-  [[gnu::always_inline]] std::int64_t bucket_of(double time) const {
-    const double bucket = (time - start_) * inverse_width_;
-    return static_cast<std::int64_t>(bucket < 0x1p52 ? bucket : 0x1p52);  // from 2^52 on: never
+  [[gnu::always_inline]] std::int64_t window_of(double time) const {
+    const double window = (time - start_) * inverse_width_;
+    return static_cast<std::int64_t>(window < 0x1p52 ? window : 0x1p52);  // from 2^52 on: never
   }
 
   /// Whether an entry counts. An entry's time is a copy: comparing bits spares a branch for NaN.
@@ -143,75 +140,61 @@ class Calendar {
   }
 
   /// The chain of what lies more than a turn of the ring ahead.
-  [[nodiscard]] std::uint64_t beyond() const { return ring_mask_ + 1; }
+  [[nodiscard]] std::size_t beyond() const { return static_cast<std::size_t>(ring_mask_) + 1; }
 
-  /// Into a fine bucket, if `valid`; without a branch, since that cannot be foretold.
-  [[gnu::always_inline]] void enter(std::int64_t bucket, double time, std::uint32_t slot, bool valid) {
-    Line& line = lines_[bucket & fine_mask_];
-    if (line.count == 8) [[unlikely]] {
-      if (valid) enter_full(bucket & fine_mask_, time, slot);
+  [[gnu::always_inline]] void enter_late(double time, std::uint32_t slot) {
+    if (late_count_ == late_slots_.size()) [[unlikely]]
+      more_late();
+    late_times_[late_count_] = time;
+    late_slots_[late_count_++] = slot;
+    late_soonest_ = time < late_soonest_ ? time : late_soonest_;
+  }
+
+  [[gnu::noinline]] void more_late() {
+    Array<double> times(2 * late_slots_.size() + 64);
+    Array<std::uint32_t> slots(times.size());
+    for (double& time : times) time = nothing;
+    for (std::size_t i = 0; i < late_count_; ++i) times[i] = late_times_[i], slots[i] = late_slots_[i];
+    late_times_ = std::move(times);
+    late_slots_ = std::move(slots);
+  }
+
+  /// Of all entries at the earliest time, the first in order; any of them if none counts.
+  template <class Before>
+  [[gnu::noinline]] Choice first_of_ties(const Record* records, Before&& before) const {
+    Choice best;
+    bool best_counts = false;
+    auto consider = [&](double time, std::uint32_t slot, bool late, std::size_t place) {
+      const bool counts = states(records[slot], time);
+      if (best.slot != no_disk && (!counts || (best_counts && !before(slot, best.slot)))) return;
+      best = {time, slot, late, place};
+      best_counts = counts;
+    };
+    const double earliest = late_soonest_ < sorted_[head_].time ? late_soonest_ : sorted_[head_].time;
+    for (std::size_t i = head_; sorted_[i].time == earliest; ++i) consider(earliest, sorted_[i].slot, false, i);
+    for (std::size_t i = 0; i < late_count_; ++i)
+      if (late_times_[i] == earliest) consider(earliest, late_slots_[i], true, i);
+    return best;
+  }
+
+  void take(const Choice& choice) {
+    if (!choice.late) {
+      std::swap(sorted_[choice.place], sorted_[head_]);
+      ++head_;
       return;
     }
-    const auto bits = std::bit_cast<std::uint64_t>(time), no_bits = std::bit_cast<std::uint64_t>(nothing);
-    line.time[line.count] = std::bit_cast<double>(bits ^ ((bits ^ no_bits) & (std::uint64_t{valid} - 1)));
-    line.slot[line.count] = slot;
-    line.count += valid;
-  }
-
-  /// Into the first lane that is free, or has become so, of the lines of a bucket.
-  [[gnu::noinline]] void enter_full(std::size_t index, double time, std::uint32_t slot) {
-    for (;; index = lines_[index].more) {
-      Line& line = lines_[index];
-      for (std::size_t lane = 0; lane < 8; ++lane) {
-        if (line.time[lane] < nothing) continue;
-        line.time[lane] = time;
-        line.slot[lane] = slot;
-        return;
-      }
-      if (line.more == 0) {
-        const auto more = static_cast<std::uint32_t>(lines_.size());
-        lines_.push_back(Line());
-        lines_[index].more = more;
-      }
+    --late_count_;
+    late_times_[choice.place] = late_times_[late_count_];
+    late_slots_[choice.place] = late_slots_[late_count_];
+    late_times_[late_count_] = nothing;
+    late_soonest_ = nothing;
+    for (std::size_t i = 0; i < late_count_; i += 8) {
+      const double soonest = smallest_of_8(&late_times_[i]).value;
+      late_soonest_ = soonest < late_soonest_ ? soonest : late_soonest_;
     }
   }
 
-  /// Of entries at the same time, the first in order. Most often they are one entry twice (a disk may have found again
-  /// and again that its kick comes next): all but one are struck out.
-  template <class Before>
-  [[gnu::always_inline]] unsigned first_of_ties(Line& line, unsigned lanes, const Record* records,
-                                                Before&& before) const {
-    auto best = static_cast<unsigned>(__builtin_ctz(lanes));
-    while ((lanes &= lanes - 1) != 0) {
-      const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
-      const std::uint32_t slot = line.slot[lane];
-      if (slot == line.slot[best])
-        line.time[lane] = nothing;
-      else if (const double time = line.time[lane]; states(records[slot], time))
-        if (!states(records[line.slot[best]], time) || before(slot, line.slot[best])) best = lane;
-    }
-    return best;
-  }
-
-  template <class Before>
-  [[gnu::noinline]] Place earliest_of_lines(const Record* records, Before&& before) {
-    Place best;
-    std::size_t index = bucket_ & fine_mask_;
-    do {
-      const Line& line = lines_[index];
-      for (std::size_t lane = 0; lane < 8; ++lane) {
-        const double time = line.time[lane];
-        const bool valid = time < nothing && states(records[line.slot[lane]], time);
-        if (!valid) continue;
-        if (time < best.time || (time == best.time && before(line.slot[lane], lines_[best.line].slot[best.lane])))
-          best = {time, index, lane};
-      }
-      index = line.more;
-    } while (index != 0);
-    return best;
-  }
-
-  [[gnu::always_inline]] void append(std::uint64_t chain, double time, std::uint32_t slot) {
+  [[gnu::always_inline]] void append(std::size_t chain, double time, std::uint32_t slot) {
     std::uint32_t& end = chains_[chain];
     if (count_of(end) == Chunk::capacity) [[unlikely]]
       end = new_chunk(chunk_of(end)) << 5;
@@ -233,7 +216,7 @@ class Calendar {
 
   /// Takes a whole chain and calls visit(time, slot) with its entries.
   template <class Visit>
-  void empty_chain(std::uint64_t chain, Visit&& visit) {
+  void empty_chain(std::size_t chain, Visit&& visit) {
     const std::uint32_t end = std::exchange(chains_[chain], no_chunks);
     std::uint32_t current = chunk_of(end);
     for (std::uint32_t count = count_of(end); current != none; count = Chunk::capacity) {
@@ -246,20 +229,46 @@ class Calendar {
     }
   }
 
-  template <class Ahead, class Soon>
-  [[gnu::always_inline]] void open_next_bucket(const Record* records, Ahead&& ahead, Soon&& soon) {
-    ++bucket_;
-    if ((bucket_ & fine_mask_) == 0) [[unlikely]] {
-      open_window(records);
-      for (std::int64_t i = 0; i < ahead_buckets && i < static_cast<std::int64_t>(fine_mask_); ++i)
-        visit_bucket(bucket_ + i, ahead);
-      for (std::int64_t i = 0; i < soon_buckets && i < static_cast<std::int64_t>(fine_mask_); ++i)
-        visit_bucket(bucket_ + i, soon);
-    }
-    if (!out_of_cache_) return;
-    visit_bucket(bucket_ + ahead_buckets, ahead);
-    visit_bucket(bucket_ + soon_buckets, soon);
-    fetch_next_window(records);
+  [[gnu::noinline]] void open_next_window(const Record* records) {
+    ++window_;
+    const auto place = static_cast<std::size_t>(window_ & ring_mask_);
+    if (place == 0)
+      empty_chain(beyond(), [&](double time, std::uint32_t slot) {
+        if (states(records[slot], time)) push(time, slot);
+      });
+    std::size_t room = 0;
+    for (std::uint32_t chunk = chunk_of(chains_[place]); chunk != none; chunk = chunks_[chunk].next)
+      room += Chunk::capacity;
+    if (room + beyond_end > sorted_.size()) make_room(room + beyond_end);
+
+    // Sorted by key first (counting), which leaves few out of order. What counts is chosen without a branch, since that
+    // cannot be foretold.
+    const double scale = static_cast<double>(keys_) * inverse_width_,
+                 origin = static_cast<double>(window_) * static_cast<double>(keys_);
+    std::size_t count = 0;
+    empty_chain(place, [&](double time, std::uint32_t slot) {
+      const auto key = static_cast<std::int64_t>((time - start_) * scale - origin);
+      const auto last = static_cast<std::int64_t>(keys_) - 1;
+      unsorted_[count] = {time, slot, static_cast<std::uint32_t>(key < 0 ? 0 : key < last ? key : last)};
+      count += states(records[slot], time);
+    });
+    for (std::uint32_t& first : firsts_) first = 0;
+    for (std::size_t i = 0; i < count; ++i) ++firsts_[unsorted_[i].key + 1];
+    for (std::size_t key = 0; key < keys_; ++key) firsts_[key + 1] += firsts_[key];
+    for (std::size_t i = 0; i < count; ++i) sorted_[firsts_[unsorted_[i].key]++] = unsorted_[i];
+    for (std::size_t i = 1; i < count; ++i)
+      for (std::size_t j = i; j > 0 && sorted_[j].time < sorted_[j - 1].time; --j)
+        std::swap(sorted_[j], sorted_[j - 1]);
+    for (std::size_t i = count; i < count + beyond_end; ++i) sorted_[i] = {nothing, 0, 0};
+    head_ = 0;
+    fetching_ = chains_[static_cast<std::size_t>((window_ + 1) & ring_mask_)];
+  }
+
+  [[gnu::noinline]] void make_room(std::size_t size) {
+    sorted_ = Array<Entry>(size + size / 2);
+    unsorted_ = Array<Entry>(size + size / 2);
+    for (Entry& entry : sorted_) entry = {nothing, 0, 0};
+    head_ = 0;
   }
 
   /// A few entries at a time, brings the records nearer that opening the next window will read.
@@ -277,36 +286,22 @@ class Calendar {
     }
   }
 
-  /// Calls visit(slot) for the entries in the first line of a bucket, if that is in the open window.
-  template <class Visit>
-  [[gnu::always_inline]] void visit_bucket(std::int64_t bucket, Visit&& visit) const {
-    const Line& line = lines_[bucket & fine_mask_];
-    for (std::uint32_t lane = 0; lane < line.count; ++lane) visit(line.slot[lane]);
-  }
-
-  [[gnu::noinline]] void open_window(const Record* records) {
-    lines_.shrink(fine_mask_ + 1);
-    const std::uint64_t window = bucket_ >> fine_bits_ & ring_mask_;
-    if (window == 0)
-      empty_chain(beyond(), [&](double time, std::uint32_t slot) {
-        if (states(records[slot], time)) push(time, slot);
-      });
-    empty_chain(window, [&](double time, std::uint32_t slot) {
-      enter(bucket_of(time), time, slot, states(records[slot], time));
-    });
-    fetching_ = chains_[(window + 1) & ring_mask_];
-  }
-
-  double start_ = 0, inverse_width_ = 1;
-  bool out_of_cache_ = false;                    // whether fetching ahead pays
-  unsigned fine_bits_ = 4;                       // a window has 2^fine_bits_ fine buckets
-  std::uint64_t fine_mask_ = 0, ring_mask_ = 0;  // number of fine buckets in a window, of windows in the ring; less 1
-  std::int64_t bucket_ = 0;                      // the open fine bucket, counted from start_
-  GrowingArray<Line> lines_;                     // the fine buckets of the open window; then second lines
-  Array<std::uint32_t> chains_;                  // the ring of windows, then beyond(): where each ends
-  std::uint32_t free_ = none;                    // chain of unused chunks
-  GrowingArray<Chunk> chunks_;
+  double start_ = 0, inverse_width_ = 1;  // of a window
+  bool out_of_cache_ = false;             // whether fetching ahead pays
+  std::int64_t window_ = 0;               // the open one, counted from start_
+  std::int64_t ring_mask_ = 0;            // number of windows in the ring, less 1
+  Array<Entry> sorted_, unsorted_;        // what was known of the open window when it opened
+  std::size_t head_ = 0;                  // the first of sorted_ not yet taken
+  std::size_t keys_ = 16;                 // four for each event
+  Array<std::uint32_t> firsts_;           // by key: where its entries begin in sorted_
+  Array<double> late_times_;              // entered since; `nothing` from late_count_ on
+  Array<std::uint32_t> late_slots_;
+  std::size_t late_count_ = 0;
+  double late_soonest_ = nothing;
+  Array<std::uint32_t> chains_;         // the ring of windows, then beyond(): where each ends
+  std::uint32_t free_ = none;           // chain of unused chunks
   std::uint32_t fetching_ = no_chunks;  // where fetch_next_window has come to
+  GrowingArray<Chunk> chunks_;
 };
 
 }  // namespace SANDGLASS_ISA

@@ -88,6 +88,7 @@ class IsaEngine final : public Engine {
   [[nodiscard]] bool before(std::uint32_t a, std::uint32_t b) const;
   void log_event(EventKind kind, double t, std::uint32_t i, std::uint32_t j) const;
   [[nodiscard]] double mean_lead() const;
+  [[nodiscard]] double window_events() const;
   [[nodiscard]] double default_skin() const;
   [[nodiscard]] double default_cell_size() const;
 

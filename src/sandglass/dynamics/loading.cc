@@ -48,10 +48,10 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
   }
 
   // First predictions into a calendar where nearly all is far ahead, only to learn how far that is.
-  calendar_ = Calendar(state_.now, 1e-12 * state_.epoch_length, 0);
+  calendar_ = Calendar(state_.now, 0, 1e-12 * state_.epoch_length, 0);
   for (std::uint32_t i = 0; i < size_; ++i) predict(i);
-  const double events = tuning_.bucket_events > 0 ? tuning_.bucket_events : 1.5;
-  calendar_ = Calendar(state_.now, events * mean_lead() / static_cast<double>(size_), size_);
+  const double lead = mean_lead();
+  calendar_ = Calendar(state_.now, lead, window_events() * lead / static_cast<double>(size_), size_);
   for (std::uint32_t i = 0; i < size_; ++i)
     if (records_[i].next_time < never) calendar_.push(records_[i].next_time, i);
   return deepest;
@@ -71,6 +71,13 @@ double IsaEngine::default_skin() const {
 double IsaEngine::default_cell_size() const {
   if (tuning_.cell_size > 0) return tuning_.cell_size;
   return box_.length * std::sqrt(2 / static_cast<double>(size_));
+}
+
+/// Events in a window of the calendar. The larger, the more are entered into the open window, which is slower; the
+/// smaller, the more windows are being filled, and no longer fit into the cache.
+double IsaEngine::window_events() const {
+  if (tuning_.window_events > 0) return tuning_.window_events;
+  return std::fmin(std::fmax(2 * std::sqrt(static_cast<double>(size_)), 8), 4096);
 }
 
 /// About the mean time from now to a disk's next event, from the median over a sample of disks: the median of an

@@ -36,7 +36,7 @@ RandomSystem any_system() {
 Tuning any_tuning() {
   return {.skin = *rc::gen::element(0.0, 0.05, 0.3, 2.0),
           .cell_size = *rc::gen::element(0.0, 1.0, 7.0, 1000.0),
-          .bucket_events = *rc::gen::element(0.0, 0.1, 50.0)};
+          .window_events = *rc::gen::element(0.0, 0.1, 50.0)};
 }
 
 double duration(const RandomSystem& system) { return system.packing_fraction < 0.2 ? 30 : 6; }

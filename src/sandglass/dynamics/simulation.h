@@ -15,10 +15,10 @@ namespace sandglass {
 struct Tuning {
   double skin = 0;           ///< width of the neighbour lists beyond contact, in R_s
   double cell_size = 0;      ///< least side of a cell of the look-up grid, in R_s
-  double bucket_events = 0;  ///< mean number of events in a fine bucket of the calendar
+  double window_events = 0;  ///< events in a window of the calendar
 };
 
-/// Event-driven dynamics of a State. Neighbour lists find who may meet, a calendar of buckets finds who meets next.
+/// Event-driven dynamics of a State. Neighbour lists find who may meet, a calendar finds who meets next.
 /// Throws InputError for a state that cannot be run exactly (overlap, box too small, disk outside the box, NaN).
 class Simulation {
  public:
