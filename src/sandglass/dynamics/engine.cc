@@ -41,8 +41,8 @@ void IsaEngine::run(double end) {
   state_.now = end;
 }
 
-/// Brings what an event of disk i will need nearer to the processor: first its own lists and cold record, and its
-/// partner's; then, through the lists, the neighbours.
+/// Brings what an event of disk i will need nearer to the processor: first its own list and cold record, and its
+/// partner's; then, through the lists, the neighbours, and where the list expires the grid.
 void IsaEngine::fetch_disk(std::uint32_t i) const {
   const std::uint32_t partner = records_[i].partner;
   prefetch(neighbours_.list(i));
@@ -53,12 +53,16 @@ void IsaEngine::fetch_disk(std::uint32_t i) const {
 }
 
 void IsaEngine::fetch_neighbours(std::uint32_t i) const {
-  const std::uint32_t partner = records_[i].partner;
+  const Record& disk = records_[i];
   const std::uint32_t* list = neighbours_.list(i);
   for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
-  if (partner == no_disk) return;
-  list = neighbours_.list(partner);
-  for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
+  if (disk.partner != no_disk) {
+    list = neighbours_.list(disk.partner);
+    for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
+  } else if (disk.next == Next::review && !within_leash(disk, cold_[i], disk.next_time)) {
+    const double flight = disk.next_time - disk.time;
+    neighbours_.fetch(neighbours_.grid().point(disk.x + disk.vx * flight, disk.y + disk.vy * flight), disk);
+  }
 }
 
 /// In an inelastic collapse infinitely many collisions take place in a finite time, and the loop would never end. After

@@ -81,6 +81,11 @@ class Neighbours {
     grid_.place(slot, at, records[slot].species);
   }
 
+  /// Brings what renew will read nearer to the processor.
+  [[gnu::always_inline]] void fetch(FixedPoint at, const Record& disk) const {
+    grid_.fetch(at, range(disk.radius, big));
+  }
+
   [[nodiscard]] std::size_t bytes() const { return lists_.bytes() + grid_.bytes(); }
 
  private:
