@@ -45,6 +45,13 @@ class Array {
   T* begin() { return data_; }
   T* end() { return data_ + size_; }
 
+  /// Makes room for `size` elements; what is there stays.
+  [[gnu::noinline]] void enlarge(std::size_t size) {
+    Array larger(size);
+    for (std::size_t i = 0; i < size_; ++i) larger[i] = data_[i];
+    *this = std::move(larger);
+  }
+
  private:
   T* data_ = nullptr;
   std::size_t size_ = 0;
@@ -64,7 +71,7 @@ class GrowingArray {
   explicit GrowingArray(std::size_t size) : storage_(size), size_(size) {}
 
   void reserve(std::size_t size) {
-    if (size > storage_.size()) enlarge(size);
+    if (size > storage_.size()) storage_.enlarge(size);
   }
 
   [[gnu::always_inline]] void push_back(const T& value) {
@@ -72,27 +79,16 @@ class GrowingArray {
       grow();
     storage_[size_++] = value;
   }
-  void pop_back() { --size_; }
-  T pop() { return storage_[--size_]; }
-  void shrink(std::size_t size) { size_ = size; }
   void clear() { size_ = 0; }
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] std::size_t capacity_bytes() const { return storage_.bytes(); }
   [[gnu::always_inline]] T& operator[](std::size_t i) { return storage_[i]; }
   [[gnu::always_inline]] const T& operator[](std::size_t i) const { return storage_[i]; }
-  T& back() { return storage_[size_ - 1]; }
   T* begin() { return storage_.begin(); }
   T* end() { return storage_.begin() + size_; }
 
  private:
-  [[gnu::noinline]] void grow() { enlarge(size_ < 64 ? 64 : size_ + size_ / 2); }
-
-  [[gnu::noinline]] void enlarge(std::size_t size) {
-    Array<T> larger(size);
-    for (std::size_t i = 0; i < size_; ++i) larger[i] = storage_[i];
-    storage_ = std::move(larger);
-  }
+  void grow() { storage_.enlarge(size_ < 64 ? 64 : size_ + size_ / 2); }
 
   Array<T> storage_;
   std::size_t size_ = 0;

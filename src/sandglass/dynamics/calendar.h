@@ -77,10 +77,6 @@ class Calendar {
     }
   }
 
-  [[nodiscard]] std::size_t bytes() const {
-    return sorted_.bytes() + unsorted_.bytes() + chains_.bytes() + chunks_.capacity_bytes();
-  }
-
  private:
   static constexpr std::uint32_t none = 0xffffffffu;
   static constexpr double nothing = std::numeric_limits<double>::infinity();
@@ -151,12 +147,9 @@ class Calendar {
   }
 
   [[gnu::noinline]] void more_late() {
-    Array<double> times(2 * late_slots_.size() + 64);
-    Array<std::uint32_t> slots(times.size());
-    for (double& time : times) time = nothing;
-    for (std::size_t i = 0; i < late_count_; ++i) times[i] = late_times_[i], slots[i] = late_slots_[i];
-    late_times_ = std::move(times);
-    late_slots_ = std::move(slots);
+    late_slots_.enlarge(2 * late_count_ + 64);
+    late_times_.enlarge(late_slots_.size());
+    for (std::size_t i = late_count_; i < late_times_.size(); ++i) late_times_[i] = nothing;
   }
 
   /// Of all entries at the earliest time, the first in order; any of them if none counts.

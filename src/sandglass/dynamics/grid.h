@@ -30,7 +30,6 @@ class Grid {
 
   /// Length of a unit of the fixed point.
   [[nodiscard]] double unit() const { return unit_; }
-  [[nodiscard]] std::size_t bytes() const { return cells_.capacity_bytes() + found_.bytes(); }
 
   /// The point at a position, which may lie a few boxes outside.
   [[gnu::always_inline]] FixedPoint point(double x, double y) const { return {to_fixed(x), to_fixed(y)}; }
@@ -80,7 +79,7 @@ class Grid {
     std::uint32_t count = 0;
     visit_cells(at, range[small] > range[big] ? range[small] : range[big], [&](const Cell& cell) {
       if (count + 16 > found_.size()) [[unlikely]]
-        more_room();
+        found_.enlarge(2 * found_.size() + 64);
       count += reach.collect(cell, &found_[count]);
     });
     return {&found_[0], count};
@@ -203,12 +202,6 @@ class Grid {
         visit(*cell);
       }
     });
-  }
-
-  [[gnu::noinline]] void more_room() {
-    Array<std::uint32_t> larger(2 * found_.size() + 64);
-    for (std::size_t i = 0; i < found_.size(); ++i) larger[i] = found_[i];
-    found_ = std::move(larger);
   }
 
   double unit_ = 0, per_unit_ = 0;

@@ -82,7 +82,7 @@ class IsaEngine final : public Engine {
   [[nodiscard]] bool comes_before_next_of(const Record& other, double t, std::uint32_t i) const;
 
   std::uint32_t nearest_partner(std::uint32_t i, double t);
-  [[nodiscard]] SmallestOf8 smallest_gap(const Record& disk, const std::uint32_t* list, double t) const;
+  [[nodiscard]] Smallest smallest_gap(const Record& disk, const std::uint32_t* list, double t) const;
   std::uint32_t partner_within_reach(std::uint32_t i, double t, const Kick& kick);
 
   [[nodiscard]] bool before(std::uint32_t a, std::uint32_t b) const;

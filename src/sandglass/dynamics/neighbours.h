@@ -86,8 +86,6 @@ class Neighbours {
     grid_.fetch(at, range(disk.radius, big));
   }
 
-  [[nodiscard]] std::size_t bytes() const { return lists_.bytes() + grid_.bytes(); }
-
  private:
   [[nodiscard]] double range(double radius, Species other) const { return radius + mixture_.radius[other] + skin_; }
 

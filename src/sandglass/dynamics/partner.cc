@@ -9,7 +9,7 @@ inline namespace SANDGLASS_ISA {
 
 #ifdef SANDGLASS_SIMD
 /// surface_gap to one block of a list, lane by lane, the same operations in the same order: the smallest, and where.
-SmallestOf8 IsaEngine::smallest_gap(const Record& disk, const std::uint32_t* list, double t) const {
+Smallest IsaEngine::smallest_gap(const Record& disk, const std::uint32_t* list, double t) const {
   const double flight = t - disk.time;
   const Vector x = Vector::all(std::fma(disk.vx, flight, disk.x)), y = Vector::all(std::fma(disk.vy, flight, disk.y));
   const Vector length = Vector::all(box_.length), inverse = Vector::all(box_.inverse);

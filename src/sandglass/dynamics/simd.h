@@ -6,6 +6,7 @@
 #if defined(__AVX2__) && defined(__FMA__)
 #define SANDGLASS_SIMD 1
 #include <immintrin.h>
+#endif
 
 #ifndef SANDGLASS_ISA
 #define SANDGLASS_ISA baseline
@@ -14,6 +15,13 @@
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
+/// The least of some doubles.
+struct Smallest {
+  double value;
+  unsigned lanes;  // where it stands
+};
+
+#ifdef SANDGLASS_SIMD
 // Each operation is the IEEE 754 one in every lane: the same bits as the scalar formula of the same shape.
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 
@@ -51,11 +59,7 @@ inline Mask other_than(const std::uint32_t* entries, std::uint32_t value) {
   return {_mm256_cmpneq_epi32_mask(all, _mm256_set1_epi32(static_cast<int>(value)))};
 }
 
-struct SmallestOf8 {
-  double value;
-  unsigned lanes;  // where it stands
-};
-inline SmallestOf8 smallest_of_8(const double* x) {
+inline Smallest smallest_of_8(const double* x) {
   const Vector v = {_mm512_load_pd(x)};
   const double value = smallest(v);
   return {value, (v == Vector::all(value)).lanes()};
@@ -124,11 +128,7 @@ inline double smallest(Vector a) {
   return _mm_cvtsd_f64(_mm_min_sd(half, _mm_unpackhi_pd(half, half)));
 }
 
-struct SmallestOf8 {
-  double value;
-  unsigned lanes;  // where it stands
-};
-inline SmallestOf8 smallest_of_8(const double* x) {
+inline Smallest smallest_of_8(const double* x) {
   const Vector low = {_mm256_load_pd(x)}, high = {_mm256_load_pd(x + 4)};
   const double value = smallest({_mm256_min_pd(low.v, high.v)});
   return {value, (low == Vector::all(value)).lanes() | (high == Vector::all(value)).lanes() << 4};
@@ -158,22 +158,9 @@ inline unsigned equal_lanes(const std::uint32_t* entries, std::uint32_t value) {
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(equal)));
 }
 
-}  // namespace SANDGLASS_ISA
-}  // namespace sandglass
 #else
 
-#ifndef SANDGLASS_ISA
-#define SANDGLASS_ISA baseline
-#endif
-
-namespace sandglass {
-inline namespace SANDGLASS_ISA {
-
-struct SmallestOf8 {
-  double value;
-  unsigned lanes;  // where it stands
-};
-inline SmallestOf8 smallest_of_8(const double* x) {
+inline Smallest smallest_of_8(const double* x) {
   double value = x[0];
   for (int i = 1; i < 8; ++i) value = x[i] < value ? x[i] : value;
   unsigned lanes = 0;
@@ -188,6 +175,7 @@ inline unsigned equal_lanes(const std::uint32_t* entries, std::uint32_t value) {
   return lanes;
 }
 
+#endif
+
 }  // namespace SANDGLASS_ISA
 }  // namespace sandglass
-#endif
