@@ -60,7 +60,7 @@ void print_summary(const Summary& s, const RunFolder& folder) {
 
 Arguments parse(int argc, char** argv, int& exit_code) {
   Arguments arguments;
-  std::string threads;
+  std::string threads, max_walltime;
   CLI::App app{"Simulates and measures one state point.", "sandglass run"};
   app.add_option("config", arguments.config, "configuration (TOML); all keys: sandglass info --keys")->required();
   app.add_option("-o,--output", arguments.folder, "folder for the results (default: runs/NAME of the configuration)");
@@ -68,6 +68,7 @@ Arguments parse(int argc, char** argv, int& exit_code) {
       ->expected(1)
       ->take_all();
   app.add_option("--threads", threads, "short for --set run.threads=N");
+  app.add_option("--max-walltime", max_walltime, "seconds; short for --set run.max_walltime_seconds=T");
   app.add_flag("--resume", arguments.resume, "go on from the checkpoint in the folder; start if there is none");
   app.add_flag("--force", arguments.force, "replace the run that the folder holds")->excludes("--resume");
   exit_code = -1;
@@ -77,6 +78,7 @@ Arguments parse(int argc, char** argv, int& exit_code) {
     exit_code = app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
   }
   if (!threads.empty()) arguments.assignments.push_back(fmt::format("run.threads={}", threads));
+  if (!max_walltime.empty()) arguments.assignments.push_back(fmt::format("run.max_walltime_seconds={}", max_walltime));
   if (arguments.folder.empty())
     arguments.folder = (std::filesystem::path("runs") / std::filesystem::path(arguments.config).stem()).string();
   return arguments;

@@ -62,13 +62,15 @@ class Descriptor {
 
 }  // namespace
 
+void sync_file(const std::filesystem::path& path) { Descriptor(path, O_RDONLY | O_CLOEXEC).sync(); }
+
 void replace_file(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write,
                   const std::function<void()>& before_rename) {
   const std::filesystem::path temporary = path.string() + ".partial";
   std::error_code error;
   try {
     write(temporary);
-    Descriptor(temporary, O_RDONLY | O_CLOEXEC).sync();
+    sync_file(temporary);
     if (before_rename) before_rename();
     std::filesystem::rename(temporary, path, error);
     if (error) fail_to_write(path, error.value());

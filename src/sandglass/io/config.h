@@ -44,6 +44,7 @@ struct Config {
     double collisions = 10000;  ///< collisions per disk measured
     std::uint64_t intervals = 10;
     std::uint64_t threads = 1;
+    double max_walltime_seconds = 0;  ///< 0: no limit
   } run;
   struct Observe {
     std::vector<double> wavenumbers{0.5, 3.0};  ///< in 1 / R_s

@@ -265,6 +265,12 @@ const std::vector<Key>& config_table() {
                                       .description = "Threads; the results do not depend on it.",
                                       .range = {1, 1024},
                                       .physics = false}),
+      key<&C::run, &C::Run::max_walltime_seconds>(
+          {.name = "run.max_walltime_seconds",
+           .unit = "s",
+           .description = "Stop at a checkpoint after this wall-clock time, to be resumed (exit code 75); 0: never.",
+           .range = {0, 1e9},
+           .physics = false}),
       key<&C::observe, &C::Observe::wavenumbers>(
           {.name = "observe.wavenumbers",
            .unit = "1/R_s",

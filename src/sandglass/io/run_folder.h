@@ -35,6 +35,7 @@ class RunFolder {
   [[nodiscard]] std::filesystem::path trajectory() const { return path_ / "trajectory.h5"; }
   [[nodiscard]] std::filesystem::path checkpoint() const { return path_ / "checkpoint.h5"; }
   [[nodiscard]] std::filesystem::path report() const { return path_ / "report.html"; }
+  [[nodiscard]] std::filesystem::path start() const { return path_ / "start.h5"; }  ///< until the run is finished
   [[nodiscard]] std::filesystem::path log() const { return path_ / "run.log"; }
 
  private:
