@@ -21,7 +21,7 @@ namespace {
 struct Arguments {
   std::string config, folder;
   std::vector<std::string> assignments;
-  bool resume = false, force = false;
+  bool resume = false, force = false, paranoid = false;
 };
 
 // "0.8123(45)" style is for papers; here value and error stand side by side.
@@ -69,6 +69,7 @@ Arguments parse(int argc, char** argv, int& exit_code) {
       ->take_all();
   app.add_option("--threads", threads, "short for --set run.threads=N");
   app.add_option("--max-walltime", max_walltime, "seconds; short for --set run.max_walltime_seconds=T");
+  app.add_flag("--paranoid", arguments.paranoid, "short for --set run.self_check=every_event (slow)");
   app.add_flag("--resume", arguments.resume, "go on from the checkpoint in the folder; start if there is none");
   app.add_flag("--force", arguments.force, "replace the run that the folder holds")->excludes("--resume");
   exit_code = -1;
@@ -79,6 +80,7 @@ Arguments parse(int argc, char** argv, int& exit_code) {
   }
   if (!threads.empty()) arguments.assignments.push_back(fmt::format("run.threads={}", threads));
   if (!max_walltime.empty()) arguments.assignments.push_back(fmt::format("run.max_walltime_seconds={}", max_walltime));
+  if (arguments.paranoid) arguments.assignments.push_back("run.self_check=every_event");
   if (arguments.folder.empty())
     arguments.folder = (std::filesystem::path("runs") / std::filesystem::path(arguments.config).stem()).string();
   return arguments;

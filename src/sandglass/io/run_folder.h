@@ -36,6 +36,9 @@ class RunFolder {
   [[nodiscard]] std::filesystem::path checkpoint() const { return path_ / "checkpoint.h5"; }
   [[nodiscard]] std::filesystem::path report() const { return path_ / "report.html"; }
   [[nodiscard]] std::filesystem::path start() const { return path_ / "start.h5"; }  ///< until the run is finished
+  /// What a run leaves that its self-check has stopped.
+  [[nodiscard]] std::filesystem::path diagnostic() const { return path_ / "diagnostic.txt"; }
+  [[nodiscard]] std::filesystem::path diagnostic_state() const { return path_ / "diagnostic.h5"; }
   [[nodiscard]] std::filesystem::path log() const { return path_ / "run.log"; }
 
  private:

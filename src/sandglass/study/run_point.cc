@@ -11,8 +11,10 @@
 #include <optional>
 
 #include "sandglass/core/errors.h"
+#include "sandglass/core/version.h"
 #include "sandglass/dynamics/simulation.h"
 #include "sandglass/dynamics/start_check.h"
+#include "sandglass/dynamics/watch.h"
 #include "sandglass/io/atomic_file.h"
 #include "sandglass/io/checkpoint.h"
 #include "sandglass/io/observables.h"
@@ -86,6 +88,11 @@ class PointRun {
   void begin_measuring();
   bool measure();
   void advance_one_beat();
+  template <class Advance>
+  void watched_beat(Advance&& advance);
+  template <class Act>
+  void watched(Act&& act);
+  void report_violation(const Violation& violation);
   [[nodiscard]] bool equilibrated() const;
   [[nodiscard]] double collisions_per_disk() const;
   [[nodiscard]] bool counts_collisions() const;
@@ -107,6 +114,7 @@ class PointRun {
   std::optional<Simulation> simulation_;
   std::optional<Measurement> measurement_;
   std::optional<FrameWriter> frames_;
+  Watch watch_;  // the calibration, whose run is thrown away, is only sampled
   RunFacts facts_;
 
   std::uint64_t calibrating_ = 0;     // 1 while the drive is being calibrated
@@ -165,7 +173,7 @@ void PointRun::begin_calibrating(State start) {
 void PointRun::calibrate() {
   while (!calibrator_->done() && !stop_requested()) {
     report_progress(monitor_.progress, "calibrating the drive", calibrator_->fraction());
-    calibrator_->advance_one_beat();
+    watched_beat([this] { calibrator_->advance_one_beat(); });
     checkpoint_now_and_then();
   }
   facts_.calibration = calibrator_->result();
@@ -187,6 +195,7 @@ void PointRun::begin_equilibrating(State start) {
   frames_.emplace(folder_.trajectory(), config_.output.trajectory_frames, start.box_length);
   measurement_.emplace(start, beat_);
   simulation_.emplace(std::move(start));
+  watch_ = Watch(config_.run.self_check);
 }
 
 void PointRun::resume() {
@@ -213,6 +222,7 @@ void PointRun::resume() {
     log("trajectory.h5 was gone: made again, without the frames before this point");
   }
   simulation_.emplace(std::move(checkpoint.state));
+  watch_ = Watch(config_.run.self_check);
   log(fmt::format("resumed at beat {}{}", beats_,
                   checkpoint.from_previous ? " from the previous checkpoint (the newest was damaged)" : ""));
 }
@@ -304,8 +314,44 @@ bool PointRun::measure() {
 void PointRun::advance_one_beat() {
   const auto start = Clock::now();
   ++beats_;
-  measurement_->run_until(*simulation_, static_cast<double>(beats_) * beat_, *frames_);
+  watched_beat([this] { measurement_->run_until(*simulation_, static_cast<double>(beats_) * beat_, *frames_); });
   engine_seconds_ += seconds_since(start);
+}
+
+template <class Advance>
+void PointRun::watched_beat(Advance&& advance) {
+  watched([&] {
+    watch_.before_beat(simulation());
+    advance();
+    watch_.after_beat(simulation());
+  });
+}
+
+template <class Act>
+void PointRun::watched(Act&& act) try {
+  act();
+} catch (const Violation& violation) {
+  report_violation(violation);
+}
+
+/// Leaves for whoever looks for the fault what there is to see, and the last good checkpoint as it is.
+void PointRun::report_violation(const Violation& violation) {
+  const std::string instructions = has_checkpoint(folder_.checkpoint()) ? "go on from the last checkpoint with --resume"
+                                                                        : "start again with --force";
+  const std::string report = fmt::format(
+      "the self-check has stopped the run: {}. Memory or processor may be failing, or the program is at "
+      "fault; nothing that was written is wrong: {}, and if it happens again, report it with {}",
+      violation.what(), instructions, folder_.diagnostic().string());
+  log(report);
+  try {
+    write_whole(folder_.diagnostic(), fmt::format("{}\n\nsandglass {}, instruction set {}, beat {}, {} events\n\n{}",
+                                                  report, version, Simulation::instruction_set(), beats_,
+                                                  simulation().tally().collisions(), config_to_toml(config_)));
+    write_state(folder_.diagnostic_state(), simulation().state());
+  } catch (const std::exception& error) {
+    log(error.what());
+  }
+  throw RunError(report);
 }
 
 void PointRun::report(const char* stage, double fraction) {
@@ -319,6 +365,7 @@ void PointRun::checkpoint_now_and_then() {
 }
 
 void PointRun::write_checkpoint_now() {
+  watched([this] { watch_.inspect(simulation()); });  // a checkpoint is good
   facts_.wall_seconds = earlier_wall_seconds_ + seconds_since(started_);
   std::vector<FieldGroup> groups;
   if (calibrator_) {
