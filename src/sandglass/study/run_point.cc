@@ -30,6 +30,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// What is kept in checkpoints changes with this number.
+constexpr std::uint64_t checkpoint_format = 2;
+
 /// Thrown out of the preparation when the run is asked to stop. There is nothing yet to go on from: it starts anew.
 struct Stopped {};
 
@@ -68,6 +71,17 @@ class FrameWriter {
   std::optional<MeasurementPlan> plan_;
 };
 static_assert(Observer<FrameWriter>);
+
+/// Refuses to go on with a run of another configuration, `held`.
+void check_same_run(const Config& config, const Config& held, const RunFolder& folder) {
+  const std::vector<std::string> differing = differing_keys(config, held);
+  if (differing.empty()) return;
+  throw InputError(
+      fmt::format("{} holds a checkpoint or run with other values of: {}. A resumed run must be the same run: give the "
+                  "same values, "
+                  "or choose another folder with -o",
+                  folder.path().string(), fmt::join(differing, ", ")));
+}
 
 class PointRun {
  public:
@@ -117,6 +131,7 @@ class PointRun {
   Watch watch_;  // the calibration, whose run is thrown away, is only sampled
   RunFacts facts_;
 
+  std::uint64_t format_ = checkpoint_format;
   std::uint64_t calibrating_ = 0;     // 1 while the drive is being calibrated
   std::uint64_t beats_ = 0;           // done since t = 0
   std::uint64_t measuring_ = 0;       // 1 once equilibration is over
@@ -199,6 +214,13 @@ void PointRun::begin_equilibrating(State start) {
 }
 
 void PointRun::resume() {
+  const Checkpoint found = read_checkpoint(folder_.checkpoint(), {{"run", {{"format", &format_}}}});
+  if (format_ != checkpoint_format)
+    throw InputError(fmt::format(
+        "the checkpoint in {} was written by another version of sandglass: finish the run with that one, or "
+        "start a new run from its state with prepare.method = \"file\"",
+        folder_.path().string()));
+  check_same_run(config_, read_config_text(found.config_toml, "the checkpoint", folder_.path()), folder_);
   const State probe = read_checkpoint(folder_.checkpoint(), {own_fields()}).state;
   earlier_wall_seconds_ = facts_.wall_seconds;
   if (calibrating_ == 1) {
@@ -385,7 +407,8 @@ void PointRun::write_checkpoint_now() {
 
 FieldGroup PointRun::own_fields() {
   return {"run",
-          {{"calibrating", &calibrating_},
+          {{"format", &format_},
+           {"calibrating", &calibrating_},
            {"beats", &beats_},
            {"measuring", &measuring_},
            {"first_beat", &first_beat_},
@@ -417,22 +440,12 @@ void PointRun::log(const std::string& line) const {
   file << fmt::format("{:%Y-%m-%d %H:%M:%S} UTC  {}\n", fmt::gmtime(std::time(nullptr)), line);
 }
 
-/// Refuses to go on with a run of another configuration.
-void check_same_run(const Config& config, const RunFolder& folder) {
-  const std::vector<std::string> differing = differing_keys(config, read_config(folder.config()));
-  if (differing.empty()) return;
-  throw InputError(fmt::format(
-      "{} holds a run with other values of: {}. A resumed run must be the same run: give the same values, or choose "
-      "another folder with -o",
-      folder.path().string(), fmt::join(differing, ", ")));
-}
-
 }  // namespace
 
 RunResult run_point(const Config& config, RunFolder& folder, bool resume, const RunMonitor& monitor) {
   PointRun run(config, folder, monitor);
   const bool held = resume && folder.holds_run();
-  if (held) check_same_run(config, folder);
+  if (held) check_same_run(config, read_config(folder.config()), folder);
   if (held && std::filesystem::exists(folder.summary()))
     return {RunOutcome::already_finished, read_summary(folder.summary())};
   if (held && has_checkpoint(folder.checkpoint()))
