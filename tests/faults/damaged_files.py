@@ -2,8 +2,10 @@
 
 import json
 import pathlib
+import resource
 import shutil
 import signal
+import subprocess
 import time
 import unittest
 
@@ -82,6 +84,14 @@ class Damage(program.Case):
         (out / "checkpoint.h5").unlink()
         self.ends_right(out)
 
+    def test_configuration_gone(self):
+        out = self.damaged("without")
+        (out / "config.toml").unlink()
+        code, text = faults.finish(faults.start(self.config, out, "--set", "run.seed=5"))
+        self.assertEqual(code, faults.BAD_INPUT, text)  # the checkpoint knows whose it is
+        self.ends_right(out)
+        self.assertTrue((out / "config.toml").exists())
+
     def test_start_damaged_or_gone(self):
         for name in ("damaged", "gone"):
             out = self.folder / name
@@ -119,6 +129,18 @@ class Damage(program.Case):
         for name in ("checkpoint.h5", "checkpoint.previous.h5"):
             shutil.copy(out / name, mixed / name)
         self.is_refused(mixed, "drive.temperature", "checkpoint")
+
+    def test_too_little_memory(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (300 << 20, 300 << 20))
+
+        command = [program.SANDGLASS, "run", str(self.config), "-o", str(self.folder / "big")]
+        for particles in ("2_000_000", "2_000_000_000"):
+            refused = subprocess.run([*command, "--set", f"system.particles={particles}"], preexec_fn=limit, text=True,
+                                     stderr=subprocess.PIPE, timeout=20)
+            self.assertEqual(refused.returncode, faults.BAD_INPUT, refused.stderr)
+            self.assertIn("GB of memory", refused.stderr)
+            self.assertFalse((self.folder / "big").exists())
 
     def test_two_runs_in_one_folder(self):
         out = self.folder / "shared"

@@ -88,7 +88,7 @@ void RunFolder::refuse_if_held() const {
 
 bool RunFolder::holds_run() const {
   std::error_code error;
-  return std::filesystem::exists(config(), error);
+  return std::filesystem::exists(config(), error) || has_checkpoint(checkpoint());
 }
 
 void RunFolder::begin() {

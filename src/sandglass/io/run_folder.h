@@ -27,7 +27,7 @@ class RunFolder {
   void begin();
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] bool holds_run() const;  ///< there is a config.toml
+  [[nodiscard]] bool holds_run() const;  ///< there is a config.toml or a checkpoint
 
   [[nodiscard]] std::filesystem::path config() const { return path_ / "config.toml"; }
   [[nodiscard]] std::filesystem::path summary() const { return path_ / "summary.json"; }

@@ -221,6 +221,7 @@ void PointRun::resume() {
         "start a new run from its state with prepare.method = \"file\"",
         folder_.path().string()));
   check_same_run(config_, read_config_text(found.config_toml, "the checkpoint", folder_.path()), folder_);
+  if (!std::filesystem::exists(folder_.config())) write_whole(folder_.config(), config_to_toml(config_));
   const State probe = read_checkpoint(folder_.checkpoint(), {own_fields()}).state;
   earlier_wall_seconds_ = facts_.wall_seconds;
   if (calibrating_ == 1) {
@@ -445,7 +446,8 @@ void PointRun::log(const std::string& line) const {
 RunResult run_point(const Config& config, RunFolder& folder, bool resume, const RunMonitor& monitor) {
   PointRun run(config, folder, monitor);
   const bool held = resume && folder.holds_run();
-  if (held) check_same_run(config, read_config(folder.config()), folder);
+  const bool has_config = std::filesystem::exists(folder.config());
+  if (held && has_config) check_same_run(config, read_config(folder.config()), folder);
   if (held && std::filesystem::exists(folder.summary()))
     return {RunOutcome::already_finished, read_summary(folder.summary())};
   if (held && has_checkpoint(folder.checkpoint()))
