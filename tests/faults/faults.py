@@ -46,9 +46,9 @@ def write_config(folder):
     return path
 
 
-def start(config, out, *options):
+def start(config, out, *options, environment=None):
     return subprocess.Popen([program.SANDGLASS, "run", str(config), "-o", str(out), "--resume", *map(str, options)],
-                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+                            env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 
 def finish(running, timeout=120):

@@ -1,5 +1,8 @@
 """kill -9 at random moments, again and again: the run goes on from its last checkpoint and ends in the same bits."""
 
+import os
+import pathlib
+import signal
 import time
 import unittest
 
@@ -46,6 +49,56 @@ class Kills(program.Case):
             self.assertEqual(faults.results(self.folder / f"run{run}"), expected)
         self.assertGreater(stops, 0)
         print(f"\n{stops} stops at a wall-time limit: nothing lost")
+
+    def test_signals(self):
+        expected, _, _ = faults.undisturbed()
+        config = faults.write_config(self.folder)
+        for name in ("SIGTERM", "SIGINT", "SIGUSR1"):
+            out = self.folder / name
+            running = faults.start(config, out)
+            while not (out / "checkpoint.h5").exists():
+                time.sleep(0.02)
+            running.send_signal(getattr(signal, name))
+            began = time.monotonic()
+            code, text = faults.finish(running)
+            self.assertEqual(code, faults.RESUMABLE, text)
+            self.assertLess(time.monotonic() - began, 10)
+            code, text = faults.finish(faults.start(config, out))
+            self.assertEqual(code, faults.DONE, text)
+            self.assertEqual(faults.results(out), expected)
+
+    def test_a_second_interrupt_stops_at_once(self):
+        config = faults.write_config(self.folder)
+        running = faults.start(config, self.folder / "out", "--set", "system.particles=40000")
+        time.sleep(0.3)  # somewhere in the preparation
+        os.kill(running.pid, signal.SIGSTOP)  # both come before it can look at the first
+        os.kill(running.pid, signal.SIGINT)
+        os.kill(running.pid, signal.SIGCONT)
+        time.sleep(0.01)
+        os.kill(running.pid, signal.SIGINT)
+        code, text = faults.finish(running)
+        self.assertIn(code, (-signal.SIGINT, faults.RESUMABLE), text)
+
+
+FAKETIME = pathlib.Path("/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1")
+
+
+class Clock(program.Case):
+    @unittest.skipUnless(FAKETIME.exists(), "needs the package faketime")
+    def test_jumps(self):
+        expected, seconds, _ = faults.undisturbed()
+        config = faults.write_config(self.folder)
+        clock = self.folder / "clock"
+        clock.write_text("+0")
+        environment = os.environ | {"LD_PRELOAD": str(FAKETIME), "FAKETIME_TIMESTAMP_FILE": str(clock),
+                                    "FAKETIME_NO_CACHE": "1"}
+        running = faults.start(config, self.folder / "out", environment=environment)
+        while running.poll() is None:
+            clock.write_text(faults.RANDOM.choice(("+0", "-10d", "+10d", "+3s", "-1000d", "+20y")))
+            time.sleep(seconds / 20)
+        code, text = faults.finish(running)
+        self.assertEqual(code, faults.DONE, text)
+        self.assertEqual(faults.results(self.folder / "out"), expected)
 
 
 if __name__ == "__main__":
