@@ -11,6 +11,7 @@
 #include <csignal>
 #include <fstream>
 #include <type_traits>
+#include <vector>
 
 #include "sandglass/core/errors.h"
 #include "sandglass/io/atomic_file.h"
@@ -36,33 +37,47 @@ class SharedFile {
   int descriptor_;
 };
 
-/// Box, mixture and number of disks; the disks follow as they are in memory.
+/// What crosses: a header, then a row for each disk. Neither has padding.
 struct Header {
   double box_length = 0;
   Mixture mixture;
   std::uint64_t disks = 0;
 };
+struct Row {
+  double x = 0, y = 0, vx = 0, vy = 0;
+  std::int32_t image_x = 0, image_y = 0;
+  std::uint64_t species = 0;
+};
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 6 * 8 && sizeof(Row) == 6 * 8);
 
 void send(const std::filesystem::path& to, const State& state) {
   const Header header{state.box_length, state.mixture, state.size()};
+  std::vector<Row> rows;
+  rows.reserve(state.size());
+  for (const Disk& d : state.disks) rows.push_back({d.x, d.y, d.vx, d.vy, d.image_x, d.image_y, d.species});
   std::ofstream file(to, std::ios::binary);
   file.write(reinterpret_cast<const char*>(&header), sizeof header);
-  file.write(reinterpret_cast<const char*>(state.disks.data()),
-             static_cast<std::streamsize>(state.size() * sizeof(Disk)));
+  file.write(reinterpret_cast<const char*>(rows.data()), static_cast<std::streamsize>(rows.size() * sizeof(Row)));
   if (!file.flush()) throw RunError("no memory for reading a start file");
 }
 
 State receive(const std::filesystem::path& from) {
-  static_assert(std::is_trivially_copyable_v<Header> && std::is_trivially_copyable_v<Disk>);
-  Header header;
-  State state;
   std::ifstream file(from, std::ios::binary);
+  Header header;
   file.read(reinterpret_cast<char*>(&header), sizeof header);
+  std::vector<Row> rows(header.disks);
+  file.read(reinterpret_cast<char*>(rows.data()), static_cast<std::streamsize>(rows.size() * sizeof(Row)));
+  if (!file) throw RunError("lost what the process that reads a start file has read");
+  State state;
   state.box_length = header.box_length;
   state.mixture = header.mixture;
-  state.disks.resize(header.disks);
-  file.read(reinterpret_cast<char*>(state.disks.data()), static_cast<std::streamsize>(state.size() * sizeof(Disk)));
-  if (!file) throw RunError("lost what the process that reads a start file has read");
+  state.disks.resize(rows.size());
+  for (std::size_t id = 0; id < rows.size(); ++id) {
+    Disk& disk = state.disks[id];
+    disk.x = rows[id].x, disk.y = rows[id].y, disk.vx = rows[id].vx, disk.vy = rows[id].vy;
+    disk.image_x = rows[id].image_x, disk.image_y = rows[id].image_y;
+    disk.species = static_cast<Species>(rows[id].species);
+  }
   return state;
 }
 

@@ -8,9 +8,9 @@
 
 namespace sandglass {
 
-/// What `read` returns (of the State box, mixture and disks, which is what such files hold), called in a child process
-/// whose time and memory are limited by the size of the file `path`. The HDF5 library was not made for damaged or
-/// hostile files: on some it crashes, never ends, or takes all memory, and then only the child is lost. Throws
+/// What `read` returns (of the State what a frame holds: box, mixture, centres, images, velocities), called in a child
+/// process whose time and memory are limited by the size of the file `path`. The HDF5 library was not made for damaged
+/// or hostile files: on some it crashes, never ends, or takes all memory, and then only the child is lost. Throws
 /// InputError with the message of the one that `read` threw, or if the child died.
 State read_apart(const std::filesystem::path& path, const std::function<State()>& read);
 

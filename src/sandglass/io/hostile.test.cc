@@ -202,8 +202,8 @@ TEST_CASE("damaged at any place, a trajectory is read, refused, or kills only th
   write_good_trajectory(path);
   const std::string whole = slurp(path);
   // The first kilobytes describe the file; most of the rest are numbers and room.
-  for (std::size_t i = 0; i < 100; ++i) {
-    const std::size_t at = i * i * (whole.size() - 1) / (99 * 99);
+  for (std::size_t i = 0; i < 30; ++i) {
+    const std::size_t at = i * i * (whole.size() - 1) / (29 * 29);
     CAPTURE(at);
     for (const char byte : {'\0', '\x01', '\xff'}) {
       std::string damaged = whole;
