@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::size_t longest_message = 1 << 16;
 constexpr int has_state = 0, has_message = 2;
+const std::string lost = "lost what the process that reads a start file has read";
 
 /// A file in memory that both processes see, for the State or the message.
 class SharedFile {
@@ -65,9 +66,10 @@ State receive(const std::filesystem::path& from) {
   std::ifstream file(from, std::ios::binary);
   Header header;
   file.read(reinterpret_cast<char*>(&header), sizeof header);
+  if (header.disks > std::filesystem::file_size(from) / sizeof(Row)) throw RunError(lost);
   std::vector<Row> rows(header.disks);
   file.read(reinterpret_cast<char*>(rows.data()), static_cast<std::streamsize>(rows.size() * sizeof(Row)));
-  if (!file) throw RunError("lost what the process that reads a start file has read");
+  if (!file) throw RunError(lost);
   State state;
   state.box_length = header.box_length;
   state.mixture = header.mixture;
