@@ -90,8 +90,9 @@ void write_whole(const std::filesystem::path& path, std::string_view contents) {
 
 std::string read_whole(const std::filesystem::path& path, std::size_t limit) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    throw InputError(fmt::format("{} is a folder; give a file", path.string()));
+  // A pipe or a device could keep us waiting for ever.
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    throw InputError(fmt::format("{} is a folder, a pipe or a device; give a file", path.string()));
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) {

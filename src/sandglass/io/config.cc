@@ -14,6 +14,8 @@ namespace sandglass {
 namespace {
 
 constexpr std::size_t file_limit = 1 << 20;  // no configuration is a megabyte long
+// A key a.a.a... makes as many tables, one in the other, as it has dots, and the library frees them by recursion.
+constexpr std::ptrdiff_t most_dots = 4096;
 
 /// Levenshtein's edit distance.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -120,6 +122,8 @@ void check_text(const Config& config) {
 Config read_config_text(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                         const std::vector<std::string>& assignments) {
   Config config;
+  if (std::count(text.begin(), text.end(), '.') > most_dots)
+    throw InputError(fmt::format("{}: more than {} dots: this is not the file meant", name, most_dots));
   try {
     apply(toml::parse(text), name, folder, config);
   } catch (const toml::parse_error& error) {

@@ -233,7 +233,7 @@ void PointRun::resume() {
   measurement_.emplace(probe, beat_);
   frames_.emplace(folder_.trajectory(), config_.output.trajectory_frames, probe.box_length);
   read_checkpoint(folder_.checkpoint(), {measurement_->plan_fields()});
-  measurement_->prepare_restore(measuring_ == 1);
+  measurement_->prepare_restore(measuring_ == 1, config_);
   std::vector<FieldGroup> groups = measurement_->fields();
   groups.push_back({"frames", frames_->fields()});
   groups.push_back({"calibration", facts_.calibration.fields()});
