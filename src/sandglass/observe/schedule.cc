@@ -19,7 +19,11 @@ std::vector<Field> MeasurementPlan::fields() {
           {"lags_per_decade", &lags_per_decade},
           {"origins", &origins},
           {"temperature_samples", &temperature_samples},
-          {"wavenumbers", &wavenumbers}};
+          {"wavenumbers", &wavenumbers},
+          {"overlap_length", &overlap_length},
+          {"selection_time", &selection_time},
+          {"structure_frames", &structure_frames},
+          {"bin_width", &bin_width}};
 }
 
 bool compatible(const MeasurementPlan& a, const MeasurementPlan& b) {
@@ -52,6 +56,12 @@ MeasurementPlan plan_measurement(double start, double interval_length, std::uint
     }
   }
   return plan;
+}
+
+std::uint64_t affordable_structure_frames(std::uint64_t wanted, const MeasurementPlan& plan, double mean_free_time) {
+  constexpr double free_times_per_frame = 1000;
+  const double affordable = (plan.end() - plan.start) / (mean_free_time * free_times_per_frame);
+  return std::min(wanted, static_cast<std::uint64_t>(std::max(2.0, affordable)));
 }
 
 namespace {

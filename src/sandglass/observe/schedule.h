@@ -19,6 +19,10 @@ struct MeasurementPlan {
   std::uint64_t origins = 8;               ///< most time origins per level and interval, 1 ... 8
   std::uint64_t temperature_samples = 50;  ///< per interval, evenly spaced
   std::vector<double> wavenumbers{0.5, 3.0};
+  double overlap_length = 0.6;          ///< a: how far a disk may have gone to count as overlapping with itself
+  double selection_time = 0;            ///< lag at which the fastest and slowest disks are chosen; 0: the longest
+  std::uint64_t structure_frames = 20;  ///< frames of which the static structure is taken
+  double bin_width = 0;                 ///< of g(r); 0: L / 800, at most 0.4
 
   /// The time at which interval `index` starts, always by this expression.
   [[nodiscard]] double interval_start(std::uint64_t index) const {
@@ -39,6 +43,10 @@ bool compatible(const MeasurementPlan& a, const MeasurementPlan& b);
 /// arguments alone, not of the machine. Throws InputError when an interval is shorter than one mean free time.
 MeasurementPlan plan_measurement(double start, double interval_length, std::uint64_t intervals, double mean_free_time,
                                  double lags_per_decade, std::vector<double> wavenumbers);
+
+/// At most `wanted` frames for the static structure, and no more than one per 1000 mean free times, but two if wanted:
+/// a frame of 10^4 disks takes as long as 20 collisions of each, whatever the number of disks.
+std::uint64_t affordable_structure_frames(std::uint64_t wanted, const MeasurementPlan& plan, double mean_free_time);
 
 /// What is due at one moment of an interval. Evaluations at an offset come before new origins there; a new origin of
 /// the shortest level is compared with itself at once (lag 0).

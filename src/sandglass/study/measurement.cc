@@ -33,6 +33,7 @@ void Measurement::begin(const MeasurementPlan& plan, const Tally& boundary) {
   boundaries_ = {boundary};
   correlator_.emplace(plan_, population_);
   averages_.emplace(plan_, population_);
+  structure_.emplace(plan_, population_);
 }
 
 TallyAverages Measurement::tally_averages() const {
@@ -43,7 +44,7 @@ TallyAverages Measurement::tally_averages() const {
 std::vector<Dataset> Measurement::results() const {
   std::vector<Dataset> datasets = timeseries_.results();
   if (!begun()) return datasets;
-  for (const auto& more : {correlator_->results(), averages_->results()})
+  for (const auto& more : {correlator_->results(), averages_->results(), structure_->results()})
     datasets.insert(datasets.end(), more.begin(), more.end());
   return datasets;
 }
@@ -55,6 +56,7 @@ std::vector<FieldGroup> Measurement::fields() {
   if (begun()) {
     stored.push_back({"correlator", correlator_->fields()});
     stored.push_back({"averages", averages_->fields()});
+    stored.push_back({"structure", structure_->fields()});
   }
   return stored;
 }
