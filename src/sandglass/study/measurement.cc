@@ -1,5 +1,8 @@
 #include "sandglass/study/measurement.h"
 
+#include <string>
+#include <utility>
+
 #include "sandglass/core/errors.h"
 
 namespace sandglass {
@@ -46,7 +49,19 @@ std::vector<Dataset> Measurement::results() const {
   if (!begun()) return datasets;
   for (const auto& more : {correlator_->results(), averages_->results(), structure_->results()})
     datasets.insert(datasets.end(), more.begin(), more.end());
+  append_flows(datasets);
   return datasets;
+}
+
+void Measurement::append_flows(std::vector<Dataset>& datasets) const {
+  IntervalFlows flows = interval_flows(boundaries_, plan_.interval_length, averages_->interval_temperatures(Group::all),
+                                       population_.size());
+  const auto add = [&](const char* name, std::vector<double>& values, const char* unit) {
+    datasets.push_back({std::string("/timeseries/intervals/") + name, {values.size()}, std::move(values), unit});
+  };
+  add("compressibility_factor", flows.compressibility_factor, "");
+  add("injected", flows.injected, "m_s R_s^2/t^3");
+  add("dissipated", flows.dissipated, "m_s R_s^2/t^3");
 }
 
 std::vector<FieldGroup> Measurement::fields() {

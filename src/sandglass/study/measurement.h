@@ -55,6 +55,7 @@ class Measurement {
   void finish_restore();                   ///< last: takes the tallies out of their stored form
 
  private:
+  void append_flows(std::vector<Dataset>& datasets) const;
   void store_boundaries();
 
   Population population_;
