@@ -156,6 +156,12 @@ void judge(const Config& config, const Measurement& measurement, Summary& summar
 
 }  // namespace
 
+void summarise_frames(const Correlator& correlator, const StructureSampler& structure, Summary& summary) {
+  describe_motion(correlator, summary);
+  describe_relaxation(correlator, summary);
+  describe_structure(structure, summary);
+}
+
 Summary summarise(const Config& config, const State& end, const Measurement& measurement, const RunFacts& facts) {
   const TallyAverages averages = measurement.tally_averages();
   const IntervalAverages& intervals = measurement.averages();
@@ -197,9 +203,7 @@ Summary summarise(const Config& config, const State& end, const Measurement& mea
 
   if (config.run.threads > 1)
     summary.decisions.push_back("One trajectory runs on one core in this version; run.threads had no effect.");
-  describe_motion(measurement.correlator(), summary);
-  describe_relaxation(measurement.correlator(), summary);
-  describe_structure(measurement.structure(), summary);
+  summarise_frames(measurement.correlator(), measurement.structure(), summary);
   describe_partners(averages, summary);
   describe_energy(end, averages, facts, summary);
   describe_drive(config, end, facts, summary);
