@@ -19,7 +19,7 @@ struct Cages {
 };
 Cages cages_of(const Snapshot& snapshot, const Population& population);
 
-/// Displacement of each disk minus the mean displacement of its neighbours at the origin [Mazoyer et al. 2009]; that of
+/// Displacement of each disk minus the mean displacement of its neighbours at the origin [Mazoyer 2009]; that of
 /// a disk without neighbours is left as it is.
 struct RelativeDisplacements {
   std::vector<double> x, y;

@@ -30,7 +30,7 @@ Estimate diffusion_coefficient(const IntervalSeries& series, double t, double sp
 /// first lag linearly in t); jackknife error. NaN when it never does.
 Estimate decay_time(const IntervalSeries& series, double level);
 
-/// D = (1/2) int_0^end <v(0).v(t)> dt [Green 1954, Kubo 1957], by piecewise cubics through the lags. Beyond the time
+/// D = (1/2) int_0^end <v(0).v(t)> dt (Green and Kubo), by piecewise cubics through the lags. Beyond the time
 /// at which correlations are lost in their noise the integral would only gather that: it ends before the first three
 /// lags in a row whose values are all within two of their errors of zero, at the latest at `longest`.
 struct GreenKubo {

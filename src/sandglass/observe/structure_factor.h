@@ -13,7 +13,7 @@ namespace sandglass {
 /// than anybody looks at, and every stride-th of them is taken, exactly.
 ///
 /// The disks are spread over a grid by a smooth kernel of 14 x 14 points, transformed, and divided by the transform of
-/// the kernel [Greengard & Lee 2004; kernel of Barnett, Magland & af Klinteberg 2019]: relative error 1e-12 of
+/// the kernel [GreengardLee 2004; kernel of Barnett 2019]: relative error 1e-12 of
 /// sqrt(N), at a cost of N log N instead of N M^2.
 struct DensityModes {
   int modes = 0;       ///< M
