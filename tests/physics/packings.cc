@@ -13,7 +13,7 @@
 #include "sandglass/core/frame.h"
 #include "sandglass/observe/bond_order.h"
 #include "sandglass/observe/population.h"
-#include "sandglass/observe/structure.h"
+#include "sandglass/observe/structure_factor.h"
 #include "sandglass/prepare/periodic.h"
 #include "sandglass/prepare/prepare.h"
 
@@ -89,7 +89,7 @@ struct Speckle {
 /// The modes of the small disks up to |k| = 4, beyond the main peak near 2.6 and its shoulder, in rings 0.05 wide.
 Speckle speckle(const Packing& made) {
   constexpr double width = 0.05, longest = 4;
-  const auto factor = structure_factor(made.frame, made.population, made.population.range(Group::small), longest);
+  const auto factor = structure_factor(density_modes(made.frame, made.population, longest, 1000), Group::small);
   std::vector<double> sum(static_cast<std::size_t>(longest / width) + 1), count(sum.size());
   const auto each_mode = [&](auto&& act) {
     for (int m = 0; m <= factor.modes; ++m) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct Dataset {
   std::vector<std::size_t> shape;
   std::variant<std::vector<double>, std::vector<std::uint64_t>> values;
   std::string unit;
+  std::vector<std::pair<std::string, double>> attributes{};  ///< numbers that say how it was measured, by name
 };
 
 }  // namespace sandglass

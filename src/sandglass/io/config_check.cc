@@ -141,6 +141,12 @@ void check_config(const Config& config) {
         config.run.intervals, config.run.collisions, std::max(1.0, std::floor(config.run.collisions / 2)),
         2 * config.run.intervals));
   }
+  if (config.observe.bin_width > 0 && config.observe.bin_width < 0.001) {
+    throw InputError(fmt::format(
+        "observe.bin_width = {} would cut g(r) into bins too fine to count in: set it to at least 0.001, or to 0 for "
+        "L / 800",
+        config.observe.bin_width));
+  }
   if (config.output.trajectory_frames == 1) {
     throw InputError(
         "output.trajectory_frames = 1: both ends of the measured stretch are stored, so set it to 0 (no file) or at "

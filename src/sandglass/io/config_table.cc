@@ -285,6 +285,28 @@ const std::vector<Key>& config_table() {
       key<&C::observe, &C::Observe::lags_per_decade>({.name = "observe.lags_per_decade",
                                                       .description = "Density of the time lags of correlations.",
                                                       .range = {1, 100}}),
+      key<&C::observe, &C::Observe::overlap_length>(
+          {.name = "observe.overlap_length",
+           .unit = "R_s",
+           .description = "How far a disk may have gone to count as overlapping with itself in Q(t) and chi_4(t).",
+           .range = {0, 1e4, true}}),
+      key<&C::observe, &C::Observe::selection_time>(
+          {.name = "observe.selection_time",
+           .unit = "time",
+           .description = "Time over which the fastest and the slowest tenth of the disks are told apart, at most the "
+                          "length of an interval; 0: that length.",
+           .range = {0, 1e12}}),
+      key<&C::observe, &C::Observe::structure_frames>(
+          {.name = "observe.structure_frames",
+           .description =
+               "Most frames of which g(r), S(k), bond order and velocity structure are taken, evenly spaced; "
+               "a short run takes fewer. 0: none.",
+           .range = {0, 1e6}}),
+      key<&C::observe, &C::Observe::bin_width>(
+          {.name = "observe.bin_width",
+           .unit = "R_s",
+           .description = "Width of the bins of g(r), 0.001 or more; 0: L / 800 as in the paper, at most 0.4.",
+           .range = {0, 1e3}}),
       key<&C::output, &C::Output::trajectory_frames>(
           {.name = "output.trajectory_frames",
            .description =

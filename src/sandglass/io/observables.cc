@@ -12,6 +12,8 @@ void write_observables(const std::filesystem::path& path, const std::vector<Data
       std::visit([&](const auto& values) { file.write(dataset.path, dataset.shape, std::span(values)); },
                  dataset.values);
       file.set_attribute(dataset.path, "unit", dataset.unit);
+      for (const auto& [name, value] : dataset.attributes)
+        file.set_attribute<double>(dataset.path, name, std::span(&value, 1));
     }
     file.close();
   });

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
@@ -19,6 +20,16 @@ void visit_exponent(const std::string& at, Exponent& exponent, Visit&& visit) {
   visit(at + "/error", exponent.error);
   visit(at + "/from", exponent.from);
   visit(at + "/to", exponent.to);
+}
+
+template <class Diffusion, class Visit>
+void visit_diffusion(const std::string& at, Diffusion& diffusion, Visit&& visit) {
+  visit(at + "/from_msd", diffusion.from_msd);
+  visit(at + "/error", diffusion.error);
+  visit(at + "/at_collisions", diffusion.at_collisions);
+  visit(at + "/from_vacf", diffusion.from_vacf);
+  visit(at + "/vacf_error", diffusion.vacf_error);
+  visit(at + "/vacf_to_collisions", diffusion.vacf_to_collisions);
 }
 
 /// The one list of members with their places in the file; writing and reading walk it.
@@ -59,6 +70,22 @@ void visit_members(S& s, Visit&& visit) {
   visit_exponent("/msd_exponent/big", s.msd_exponent.big, visit);
   visit("/msd_unit_time/small", s.msd_unit_time.small);
   visit("/msd_unit_time/big", s.msd_unit_time.big);
+  visit_diffusion("/diffusion/small", s.diffusion.small, visit);
+  visit_diffusion("/diffusion/big", s.diffusion.big, visit);
+  visit_diffusion("/diffusion/all", s.diffusion.all, visit);
+  visit("/relaxation_time", s.relaxation_time);
+  visit("/contact_value/small_small", s.contact_value.small_small);
+  visit("/contact_value/small_big", s.contact_value.small_big);
+  visit("/contact_value/big_big", s.contact_value.big_big);
+  visit("/collision_rate_by_pair/small_small", s.collision_rate_by_pair.small_small);
+  visit("/collision_rate_by_pair/small_big", s.collision_rate_by_pair.small_big);
+  visit("/collision_rate_by_pair/big_small", s.collision_rate_by_pair.big_small);
+  visit("/collision_rate_by_pair/big_big", s.collision_rate_by_pair.big_big);
+  visit("/bond_order/global", s.bond_order.global);
+  visit("/bond_order/local", s.bond_order.local);
+  visit("/anisotropy/all", s.anisotropy.all);
+  visit("/anisotropy/small", s.anisotropy.small);
+  visit("/velocity_correlation_length", s.velocity_correlation_length);
   visit("/errors", s.errors);
   visit("/decisions", s.decisions);
   visit("/warnings", s.warnings);
@@ -68,12 +95,19 @@ void visit_members(S& s, Visit&& visit) {
 }
 
 using Errors = std::vector<std::pair<std::string, double>>;
+using RelaxationTimes = std::vector<Summary::RelaxationTime>;
 
 template <class T>
 Json pack(const T& value) {
   if constexpr (std::is_same_v<T, Errors>) {
     Json object = Json::object();
     for (const auto& [name, error] : value) object[name] = error;
+    return object;
+  } else if constexpr (std::is_same_v<T, RelaxationTimes>) {
+    Json object = Json::object();
+    for (const auto& [k, small_disks, error, big_disks, big_error] : value)
+      object[fmt::format("{}", k)] = {
+          {"small", small_disks}, {"error", error}, {"big", big_disks}, {"big_error", big_error}};
     return object;
   } else {
     return value;  // NaN and infinities are printed as null
@@ -95,6 +129,12 @@ void unpack(const Json& json, T& value) {
   } else if constexpr (std::is_same_v<T, Errors>) {
     if (!json.is_object()) throw InputError("the errors are not listed by name");
     for (const auto& [name, error] : json.items()) value.emplace_back(name, number_or_unknown(error));
+  } else if constexpr (std::is_same_v<T, RelaxationTimes>) {
+    for (const auto& [name, time] : json.items()) {
+      const auto member = [&](const char* key) { return number_or_unknown(time.at(key)); };
+      value.push_back(
+          {std::strtod(name.c_str(), nullptr), member("small"), member("error"), member("big"), member("big_error")});
+    }
   } else {
     value = json.get<T>();
   }

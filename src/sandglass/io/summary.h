@@ -35,6 +35,32 @@ struct Summary {
     double value = unknown, error = unknown, from = unknown, to = unknown;
   };
 
+  struct Diffusion {  ///< (1/4) d MSD / ds, per collision of a disk
+    double from_msd = unknown, error = unknown;
+    double at_collisions = unknown;                    ///< s at which the slope is taken
+    double from_vacf = unknown, vacf_error = unknown;  ///< the same from the integral of the VACF
+    double vacf_to_collisions = unknown;               ///< and where that ends
+  };
+  struct DiffusionByGroup {
+    Diffusion small, big, all;
+  };
+  struct RelaxationTime {  ///< S_inc(k, tau) = 1/2
+    double wavenumber = unknown;
+    double small = unknown, error = unknown, big = unknown, big_error = unknown;
+  };
+  struct ByPair {  ///< of species
+    double small_small = unknown, small_big = unknown, big_big = unknown;
+  };
+  struct PartnerRate {  ///< collisions per time of a disk of the first species with the second
+    double small_small = unknown, small_big = unknown, big_small = unknown, big_big = unknown;
+  };
+  struct BondOrder {
+    double global = unknown, local = unknown;
+  };
+  struct Anisotropy {  ///< of the main ring of S(k)
+    double all = unknown, small = unknown;
+  };
+
   std::string version;
   std::uint64_t seed = 0, particles = 0;
   double packing_fraction = unknown, restitution = unknown, box_length = unknown;
@@ -58,8 +84,15 @@ struct Summary {
   Energy energy;
   BySpecies<Exponent> msd_exponent;
   BySpecies<double> msd_unit_time{unknown, unknown};  ///< t at which the mean-square displacement is 1
-  double temperature_drift = unknown;                 ///< relative change of T over the measured stretch
-  std::vector<std::string> decisions;                 ///< what the program decided by itself
+  DiffusionByGroup diffusion;
+  std::vector<RelaxationTime> relaxation_time;
+  ByPair contact_value;
+  PartnerRate collision_rate_by_pair;
+  BondOrder bond_order;
+  Anisotropy anisotropy;
+  double velocity_correlation_length = unknown;
+  double temperature_drift = unknown;  ///< relative change of T over the measured stretch
+  std::vector<std::string> decisions;  ///< what the program decided by itself
   std::vector<std::string> warnings;
 };
 

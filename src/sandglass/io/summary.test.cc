@@ -34,6 +34,7 @@ TEST_CASE("the file has the keys that readers rely on, and unknowns are null") {
   summary.version = "1.2";
   summary.momentum = {0.5, -0.25};
   summary.msd_exponent.small = {0.6163, 0.0011, 1, 10};
+  summary.relaxation_time = {{0.5, 12.5, 0.25, Summary::unknown, Summary::unknown}, {3, 1.5, 0.1, 2.5, 0.2}};
   summary.decisions = {"a \"quoted\"\nsentence", "bad bytes \xff"};
   summary.stationary = true;
   write_summary(folder / "summary.json", summary);
@@ -69,6 +70,11 @@ TEST_CASE("the file has the keys that readers rely on, and unknowns are null") {
   CHECK(again.momentum == summary.momentum);
   CHECK(again.msd_exponent.small.error == 0.0011);
   CHECK(std::isnan(again.msd_exponent.big.value));
+  REQUIRE(again.relaxation_time.size() == 2);
+  CHECK(again.relaxation_time[0].wavenumber == 0.5);
+  CHECK(again.relaxation_time[0].small == 12.5);
+  CHECK(std::isnan(again.relaxation_time[0].big));
+  CHECK(again.relaxation_time[1].big_error == 0.2);
   CHECK(again.decisions[0] == summary.decisions[0]);
   CHECK(again.stationary);
   CHECK(to_json(again) == text);

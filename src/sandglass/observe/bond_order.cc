@@ -47,13 +47,16 @@ double farthest_corner(const std::vector<Corner>& cell) {
   return std::sqrt(squared);
 }
 
+// Not from a C library, whose bits differ between machines.
+double magnitude(std::complex<double> z) { return std::sqrt(z.real() * z.real() + z.imag() * z.imag()); }
+
 std::complex<double> weighted_order(const std::vector<Corner>& cell, const std::vector<Cells::Neighbour>& near) {
   std::complex<double> sum = 0;
   double perimeter = 0;
   for (std::size_t k = 0; k < cell.size(); ++k) {
     if (cell[k].neighbour == no_neighbour) continue;
     const Corner& next = cell[(k + 1) % cell.size()];
-    const double length = std::hypot(next.x - cell[k].x, next.y - cell[k].y);
+    const double length = magnitude({next.x - cell[k].x, next.y - cell[k].y});
     const Cells::Neighbour& neighbour = near[cell[k].neighbour];
     const auto direction = std::complex<double>(neighbour.dx, neighbour.dy) / std::sqrt(neighbour.squared());
     const auto square = direction * direction;
@@ -72,7 +75,7 @@ std::vector<std::complex<double>> bond_order(const Frame& frame, const Populatio
   const double largest = std::max(population.mixture.radius[small], population.mixture.radius[big]);
   const double half = population.box_length / 2;
   const double spacing = population.box_length / std::sqrt(static_cast<double>(frame.size()));
-  const Cells cells(frame, population.box_length, 1.5 * spacing);
+  const Cells cells(frame.x, frame.y, population.box_length, 1.5 * spacing);
 
   std::vector<std::complex<double>> psi(frame.size());
   std::vector<Cells::Neighbour> near;
@@ -102,7 +105,13 @@ std::vector<std::complex<double>> bond_order(const Frame& frame, const Populatio
 double global_bond_order(const std::vector<std::complex<double>>& psi) {
   std::complex<double> sum = 0;
   for (const auto& value : psi) sum += value;
-  return psi.empty() ? 0 : std::abs(sum) / static_cast<double>(psi.size());
+  return psi.empty() ? 0 : magnitude(sum) / static_cast<double>(psi.size());
+}
+
+double local_bond_order(const std::vector<std::complex<double>>& psi) {
+  double sum = 0;
+  for (const auto& value : psi) sum += magnitude(value);
+  return psi.empty() ? 0 : sum / static_cast<double>(psi.size());
 }
 
 }  // namespace sandglass

@@ -17,4 +17,7 @@ std::vector<std::complex<double>> bond_order(const Frame& frame, const Populatio
 /// |<psi_6>| over all disks: 1 in a perfect triangular lattice, about |psi_6| / sqrt(N) without long-range order.
 double global_bond_order(const std::vector<std::complex<double>>& psi);
 
+/// Mean |psi_6| of a disk.
+double local_bond_order(const std::vector<std::complex<double>>& psi);
+
 }  // namespace sandglass

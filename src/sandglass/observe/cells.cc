@@ -1,30 +1,33 @@
 #include "sandglass/observe/cells.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace sandglass {
 
-Cells::Cells(const Frame& frame, double box_length, double side) : box_length_(box_length) {
+Cells::Cells(std::span<const double> x, std::span<const double> y, double box_length, double side)
+    : box_length_(box_length) {
   // No more cells than disks: empty ones only cost memory.
-  const double most = std::max(1.0, std::sqrt(static_cast<double>(frame.size())));
+  const double most = std::max(1.0, std::sqrt(static_cast<double>(x.size())));
   per_side_ = static_cast<int>(std::clamp(std::floor(box_length / side), 1.0, most));
   auto wrapped = [&](double c) { return c - box_length * std::floor(c / box_length); };
-  std::vector<std::uint32_t> cell_of(frame.size());
+  std::vector<std::uint32_t> cell_of(x.size());
   first_.assign(static_cast<std::size_t>(per_side_ * per_side_) + 1, 0);
-  x_.resize(frame.size());
-  y_.resize(frame.size());
-  for (std::size_t id = 0; id < frame.size(); ++id) {
-    x_[id] = wrapped(frame.x[id]);
-    y_[id] = wrapped(frame.y[id]);
+  x_.resize(x.size());
+  y_.resize(x.size());
+  for (std::size_t id = 0; id < x.size(); ++id) {
+    x_[id] = wrapped(x[id]);
+    y_[id] = wrapped(y[id]);
     cell_of[id] = static_cast<std::uint32_t>(cell(y_[id]) * per_side_ + cell(x_[id]));
     ++first_[cell_of[id] + 1];
   }
   for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  sorted_.resize(frame.size());
-  for (std::uint32_t id = 0; id < frame.size(); ++id) sorted_[next[cell_of[id]]++] = id;
+  sorted_.resize(x.size());
+  for (std::uint32_t id = 0; id < x.size(); ++id) sorted_[next[cell_of[id]]++] = id;
+  for (const std::uint32_t id : sorted_) {
+    sorted_x_.push_back(x_[id]);
+    sorted_y_.push_back(y_[id]);
+  }
 }
 
 int Cells::cell(double coordinate) const {

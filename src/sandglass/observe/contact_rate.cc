@@ -4,27 +4,16 @@
 #include <cmath>
 
 #include "sandglass/observe/cells.h"
+#include "sandglass/observe/structure.h"
 
 namespace sandglass {
-namespace {
-
-/// What a bin counts for in the least-squares parabola through eight bins, taken at the edge u = -4 of the first; the
-/// bins are centred at u = -7/2 ... 7/2, sum u^2 = 42, sum u^4 = 388.5.
-double weight(std::size_t bin) {
-  const double u = static_cast<double>(bin) - 3.5;
-  return -4 * u / 42 + (86 * u * u - 283.5) / (8 * 388.5 - 42 * 42);
-}
-
-}  // namespace
 
 ContactRate::ContactRate(const Population& population, double range)
-    : population_(population), range_(range), species_(population.size(), small) {
-  for (std::size_t i = population.small_count; i < population.size(); ++i) species_[population.order[i]] = big;
-}
+    : population_(population), range_(range), species_(species_by_id(population)) {}
 
 void ContactRate::add(const Frame& frame) {
   const auto& radius = population_.mixture.radius;
-  const Cells cells(frame, population_.box_length, 2 * std::max(radius[small], radius[big]) * (1 + range_));
+  const Cells cells(frame.x, frame.y, population_.box_length, 2 * std::max(radius[small], radius[big]) * (1 + range_));
   std::vector<Cells::Neighbour> near;
   std::array<Bins, 3> speeds{};
   for (std::uint32_t id = 0; id < frame.size(); ++id) {
@@ -45,7 +34,7 @@ void ContactRate::add(const Frame& frame) {
   }
   for (std::size_t pair = 0; pair < 3; ++pair) {
     double estimate = 0;
-    for (std::size_t bin = 0; bin < bins; ++bin) estimate += weight(bin) * speeds[pair][bin];
+    for (std::size_t bin = 0; bin < bins; ++bin) estimate += edge_weight(bin) * speeds[pair][bin];
     sum_[pair] += estimate;
     sum_of_squares_[pair] += estimate * estimate;
   }
@@ -55,7 +44,7 @@ void ContactRate::add(const Frame& frame) {
 Estimate ContactRate::collisions_per_time(std::size_t pair) const {
   const auto frames = static_cast<double>(frames_);
   double counting = 0;
-  for (std::size_t bin = 0; bin < bins; ++bin) counting += weight(bin) * weight(bin) * squares_[pair][bin];
+  for (std::size_t bin = 0; bin < bins; ++bin) counting += edge_weight(bin) * edge_weight(bin) * squares_[pair][bin];
   const double mean = sum_[pair] / frames;
   const double scatter = frames_ > 1 ? (sum_of_squares_[pair] / frames - mean * mean) / (frames - 1) : 0;
   return {mean, std::sqrt(std::max(counting / (frames * frames), scatter))};

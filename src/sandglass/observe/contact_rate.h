@@ -7,6 +7,7 @@
 
 #include "sandglass/observe/interval_series.h"
 #include "sandglass/observe/population.h"
+#include "sandglass/observe/structure.h"
 
 namespace sandglass {
 
@@ -32,7 +33,7 @@ class ContactRate {
   [[nodiscard]] Estimate collisions_per_time(std::size_t pair) const;
 
  private:
-  static constexpr std::size_t bins = 8;
+  static constexpr std::size_t bins = edge_bins;
   using Bins = std::array<double, bins>;
 
   Population population_;

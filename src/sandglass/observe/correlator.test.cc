@@ -129,8 +129,7 @@ TEST_CASE("all quantities equal a brute-force evaluation on random frames") {
     for (std::size_t interval = 0; interval < plan.intervals; ++interval) {
       const double start = 3.7 + static_cast<double>(interval) * 2.3;
       for (std::size_t lag = 0; lag < schedule.lags.size(); ++lag) {
-        const auto level = schedule.level_of_lag[lag];
-        const std::uint64_t origins = level == 0 ? 1 : plan.origins;
+        const std::uint64_t origins = schedule.level_of_lag[lag] == 0 ? 1 : plan.origins;
         double square = 0, fourth = 0, velocity = 0, scattering = 0;
         for (std::uint64_t k = 0; k < origins; ++k) {
           const double offset = static_cast<double>(k) * 2.3 / static_cast<double>(plan.origins);

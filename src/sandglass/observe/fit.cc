@@ -92,4 +92,75 @@ Estimate diffusion_coefficient(const IntervalSeries& series, double t, double sp
   });
 }
 
+Estimate decay_time(const IntervalSeries& series, double level) {
+  if (series.intervals == 0) return {};
+  return jackknife(series.intervals, [&](std::size_t left_out) {
+    double before = 1;
+    for (std::size_t lag = 1; lag < series.time.size(); ++lag) {
+      const double t1 = series.time[lag - 1], t2 = series.time[lag], value = series.mean(lag, left_out);
+      if (value <= level) {
+        const double fraction = (before - level) / (before - value);
+        return t1 > 0 ? t1 * portable_exp(fraction * portable_log(t2 / t1)) : t2 * fraction;
+      }
+      before = value;
+    }
+    return nan;
+  });
+}
+
+namespace {
+
+/// Slope at point 1 of the parabola through three points.
+double middle_slope(double t0, double f0, double t1, double f1, double t2, double f2) {
+  const double left = (f1 - f0) / (t1 - t0), right = (f2 - f1) / (t2 - t1);
+  return (left * (t2 - t1) + right * (t1 - t0)) / (t2 - t0);
+}
+
+/// Integral of f over t from point 0 to point `last`: between two points h (f1 + f2) / 2 + h^2 (f1' - f2') / 12.
+template <class Value>
+double integral(const std::vector<double>& t, Value&& f, std::size_t last) {
+  const auto slope = [&](std::size_t i) {
+    if (i == 0 || i == last) {  // that of the parabola through the three points at the end
+      const std::size_t a = i == 0 ? 0 : last - 2;
+      const double middle = middle_slope(t[a], f(a), t[a + 1], f(a + 1), t[a + 2], f(a + 2));
+      const std::size_t near = i == 0 ? 0 : last - 1;
+      return 2 * (f(near + 1) - f(near)) / (t[near + 1] - t[near]) - middle;
+    }
+    return middle_slope(t[i - 1], f(i - 1), t[i], f(i), t[i + 1], f(i + 1));
+  };
+  double sum = 0;
+  for (std::size_t i = 0; i < last; ++i) {
+    const double h = t[i + 1] - t[i];
+    sum += h * (f(i) + f(i + 1)) / 2 + h * h * (slope(i) - slope(i + 1)) / 12;
+  }
+  return sum;
+}
+
+}  // namespace
+
+GreenKubo diffusion_from_velocities(const IntervalSeries& velocities, double longest) {
+  constexpr int lost_in_a_row = 3;
+  GreenKubo result;
+  if (velocities.intervals == 0) return result;
+  std::size_t last = 0;
+  int lost = 0;
+  for (std::size_t lag = 1; lag < velocities.time.size() && velocities.time[lag] <= longest * (1 + 1e-9); ++lag) {
+    const Estimate correlation = velocities.estimate(lag);
+    lost = std::fabs(correlation.value) <= 2 * correlation.error ? lost + 1 : 0;
+    if (lost == lost_in_a_row) {
+      last = lag - lost_in_a_row;
+      break;
+    }
+    last = lag;
+  }
+  if (last < 2) return result;
+  result.end = velocities.time[last];
+  result.diffusion = jackknife(velocities.intervals, [&](std::size_t left_out) {
+    return integral(
+               velocities.time, [&](std::size_t lag) { return velocities.mean(lag, left_out); }, last) /
+           2;
+  });
+  return result;
+}
+
 }  // namespace sandglass

@@ -26,4 +26,17 @@ MinimalExponent minimal_exponent(const IntervalSeries& series, double width = 3.
 /// D = (1/4) d MSD / dt at t: difference quotient between the outermost lags inside [t / spread, t * spread].
 Estimate diffusion_coefficient(const IntervalSeries& series, double t, double spread = 1.5);
 
+/// The earliest time at which a series that starts at 1 falls to `level`, interpolated linearly in ln t (before the
+/// first lag linearly in t); jackknife error. NaN when it never does.
+Estimate decay_time(const IntervalSeries& series, double level);
+
+/// D = (1/2) int_0^end <v(0).v(t)> dt (Green and Kubo), by piecewise cubics through the lags. Beyond the time
+/// at which correlations are lost in their noise the integral would only gather that: it ends before the first three
+/// lags in a row whose values are all within two of their errors of zero, at the latest at `longest`.
+struct GreenKubo {
+  Estimate diffusion;
+  double end = std::numeric_limits<double>::quiet_NaN();
+};
+GreenKubo diffusion_from_velocities(const IntervalSeries& velocities, double longest);
+
 }  // namespace sandglass

@@ -85,3 +85,73 @@ TEST_CASE("smallest local exponent, and diffusion") {
   CHECK(diffusion_coefficient(line, 50).value == doctest::Approx(0.03).epsilon(1e-10));
   CHECK(std::isnan(diffusion_coefficient(line, 1e5).value));
 }
+
+namespace {
+
+// The same with a value at lag 0, as correlations have it.
+template <class F>
+IntervalSeries correlation_of(F&& f, std::size_t intervals, double noise, std::uint64_t seed) {
+  IntervalSeries series = series_of([](double) { return 0; }, intervals, 0, true, 0);
+  series.totals.assign(series.time.size(), 0);
+  for (std::size_t i = 0; i < intervals; ++i) {
+    for (std::size_t lag = 0; lag < series.time.size(); ++lag) {
+      const auto words = random_words(seed, Stream::probe, i, lag);
+      double& mean = series.means[i * series.time.size() + lag];
+      mean = f(series.time[lag]) + noise * gaussian_pair(words[0], words[1])[0];
+      series.totals[lag] += mean;
+    }
+  }
+  return series;
+}
+
+}  // namespace
+
+TEST_CASE("decay time: linear in ln t, and in t before the first lag") {
+  // 1 - 0.1 ln(t / 0.001) is 1/2 at t = 0.001 e^5.
+  const auto series = correlation_of([](double t) { return t > 0 ? 1 - 0.1 * std::log(t / 0.001) : 1; }, 6, 0, 1);
+  CHECK(decay_time(series, 0.5).value == doctest::Approx(0.001 * std::exp(5)).epsilon(1e-10));
+  CHECK(decay_time(series, 0.5).error < 1e-10);
+  CHECK(std::isnan(decay_time(series, -0.5).value));
+  const auto fast = correlation_of([](double t) { return t > 0 ? 0.2 : 1; }, 6, 0, 1);
+  CHECK(decay_time(fast, 0.6).value == doctest::Approx(0.0005).epsilon(1e-10));
+  // dS / d ln t = 0.1 and S is known to 0.01 / sqrt(20) there: 2.2 % of t; the slope between two lags, and the error of
+  // 20 intervals, are themselves only good to some 16 %.
+  const auto noisy = correlation_of([](double t) { return t > 0 ? 1 - 0.1 * std::log(t / 0.001) : 1; }, 20, 0.01, 5);
+  const Estimate time = decay_time(noisy, 0.5);
+  CHECK(time.error < 0.04 * time.value);
+  CHECK(std::fabs(time.value - 0.001 * std::exp(5)) < 5 * time.error);
+}
+
+TEST_CASE("Ornstein-Uhlenbeck: D = T / (m gamma) from displacements and from velocities") {
+  // VACF = 2 exp(-gamma t), MSD = (4 / gamma^2) (gamma t - 1 + exp(-gamma t)), D = 1 / gamma per unit of T / m.
+  const double gamma = 1.3;
+  const auto vacf = [&](double t) { return 2 * std::exp(-gamma * t); };
+  const auto msd = [&](double t) { return 4 / (gamma * gamma) * (gamma * t - 1 + std::exp(-gamma * t)); };
+  CHECK(diffusion_coefficient(correlation_of(msd, 5, 0, 1), 100).value == doctest::Approx(1 / gamma).epsilon(1e-9));
+  const GreenKubo exact = diffusion_from_velocities(correlation_of(vacf, 5, 0, 1), 100);
+  CHECK(exact.end == doctest::Approx(100).epsilon(1e-9));
+  // The slopes of parabolas are off by h^2 f''' / 6, which counts because the steps h = 0.21 t grow by q = 1.21:
+  // (1 - 1 / q^2) / 72 int h^3 f''' dt = 6 * 0.0044 * 0.21^3 = 2.5e-4 of the integral; trapezia would be 0.6 % off.
+  CHECK(exact.diffusion.value == doctest::Approx(1 / gamma).epsilon(4e-4));
+
+  // With noise 1e-3 sqrt(20) per interval the correlations are lost at t = ln(1000) / gamma = 5.3 or soon after.
+  const GreenKubo noisy = diffusion_from_velocities(correlation_of(vacf, 20, 1e-3 * std::sqrt(20.0), 2), 1000);
+  CHECK(noisy.end > 3);
+  CHECK(noisy.end < 12);
+  CHECK(noisy.diffusion.error < 0.01);
+  CHECK(std::fabs(noisy.diffusion.value - 1 / gamma) < 5 * noisy.diffusion.error + 1e-3);
+  CHECK(std::isnan(diffusion_from_velocities({}, 10).diffusion.value));
+}
+
+TEST_CASE("intervals merged into blocks keep their means, and their number is bounded") {
+  const auto series = correlation_of([](double t) { return t; }, 23, 0.1, 7);
+  const BlockedSeries all = blocked(series, 100), few = blocked(series, 10);
+  CHECK(all.intervals_per_block == 1);
+  CHECK(all.blocks == 23);
+  CHECK(few.intervals_per_block == 3);
+  CHECK(few.blocks == 8);
+  const std::size_t lags = series.time.size() - 1;
+  CHECK(all.means[2 * lags + 4] == series.interval_mean(2, 5));
+  CHECK(few.means[7 * lags + 4] ==
+        doctest::Approx((series.interval_mean(21, 5) + series.interval_mean(22, 5)) / 2).epsilon(1e-12));
+}

@@ -18,7 +18,7 @@ struct Estimate {
 inline constexpr std::size_t no_interval = static_cast<std::size_t>(-1);
 
 /// Means by (interval, lag), row-major, over finished intervals: every interval has the same number of samples at a
-/// lag.
+/// lag. Of a static quantity the "lags" are its abscissae and the intervals blocks of frames.
 struct IntervalSeries {
   std::vector<double> time;  ///< the lags
   std::size_t intervals = 0;
@@ -36,6 +36,14 @@ struct IntervalSeries {
 
 /// Mean of one value per interval, with its standard error.
 Estimate mean_of_intervals(std::span<const double> values);
+
+/// The intervals of a series merged into at most `most` blocks of equally many consecutive ones (the last may be
+/// shorter), by (block, lag), lag 0 left out: a quantity against its waiting time in bounded room.
+struct BlockedSeries {
+  std::size_t intervals_per_block = 1, blocks = 0;
+  std::vector<double> means;
+};
+BlockedSeries blocked(const IntervalSeries& series, std::size_t most);
 
 /// Value and error of statistic(left_out), a function of means that leave one interval out, over `intervals`
 /// independent intervals: sigma^2 = (n-1)/n sum_i (theta_i - <theta>)^2 [Efron 1982]. For a mean of equal counts this

@@ -3,21 +3,40 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sandglass {
+#include "sandglass/observe/van_hove.h"
 
-void add_displacements(const Snapshot& origin, const Snapshot& now, Range range, double scale, ExactSum& square,
-                       ExactSum& fourth) {
+namespace sandglass {
+namespace {
+
+/// Squares and fourth powers of `count` displacements; how many squares are at most `limit`.
+[[gnu::target_clones("avx2", "default")]] std::uint64_t powers(const double* x, const double* x0, const double* y,
+                                                               const double* y0, std::size_t count, double scale,
+                                                               double limit, double* squares, double* fourths) {
+  std::uint64_t within = 0;
+  for (std::size_t j = 0; j < count; ++j) {
+    const double dx = (x[j] - x0[j]) * scale;
+    const double dy = (y[j] - y0[j]) * scale;
+    squares[j] = dx * dx + dy * dy;
+    fourths[j] = squares[j] * squares[j];
+    within += squares[j] <= limit ? 1 : 0;
+  }
+  return within;
+}
+
+}  // namespace
+
+void add_displacements(const Snapshot& origin, const Snapshot& now, Range range, double scale, double overlap_length,
+                       DisplacementSums& sums) {
   std::array<double, block_size> squares, fourths;
+  const double limit = overlap_length * overlap_length * scale * scale, unscaled = 1 / (scale * scale);
   for (std::size_t begin = range.begin; begin < range.end; begin += block_size) {
     const std::size_t count = std::min(block_size, range.end - begin);
-    for (std::size_t j = 0; j < count; ++j) {
-      const double dx = (now.x[begin + j] - origin.x[begin + j]) * scale;
-      const double dy = (now.y[begin + j] - origin.y[begin + j]) * scale;
-      squares[j] = dx * dx + dy * dy;
-      fourths[j] = squares[j] * squares[j];
-    }
-    square.add(ordered_sum({squares.data(), count}));
-    fourth.add(ordered_sum({fourths.data(), count}));
+    sums.overlapping += powers(&now.x[begin], &origin.x[begin], &now.y[begin], &origin.y[begin], count, scale, limit,
+                               squares.data(), fourths.data());
+    sums.square.add(ordered_sum({squares.data(), count}));
+    sums.fourth.add(ordered_sum({fourths.data(), count}));
+    if (sums.by_distance == nullptr) continue;
+    for (std::size_t j = 0; j < count; ++j) ++sums.by_distance[van_hove_bin(squares[j] * unscaled)];
   }
 }
 

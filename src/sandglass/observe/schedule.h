@@ -19,6 +19,10 @@ struct MeasurementPlan {
   std::uint64_t origins = 8;               ///< most time origins per level and interval, 1 ... 8
   std::uint64_t temperature_samples = 50;  ///< per interval, evenly spaced
   std::vector<double> wavenumbers{0.5, 3.0};
+  double overlap_length = 0.6;          ///< a: how far a disk may have gone to count as overlapping with itself
+  double selection_time = 0;            ///< lag at which the fastest and slowest disks are chosen; 0: the longest
+  std::uint64_t structure_frames = 20;  ///< frames of which the static structure is taken
+  double bin_width = 0;                 ///< of g(r); 0: L / 800, at most 0.4
 
   /// The time at which interval `index` starts, always by this expression.
   [[nodiscard]] double interval_start(std::uint64_t index) const {
@@ -40,14 +44,18 @@ bool compatible(const MeasurementPlan& a, const MeasurementPlan& b);
 MeasurementPlan plan_measurement(double start, double interval_length, std::uint64_t intervals, double mean_free_time,
                                  double lags_per_decade, std::vector<double> wavenumbers);
 
-/// What is due at one moment of an interval. Evaluations at an offset come before new origins there; a new origin of
-/// the shortest level is compared with itself at once (lag 0).
+/// At most `wanted` frames for the static structure, and no more than one per 1000 mean free times, but two if wanted:
+/// a frame of 10^4 disks takes as long as 20 collisions of each, whatever the number of disks.
+std::uint64_t affordable_structure_frames(std::uint64_t wanted, const MeasurementPlan& plan, double mean_free_time);
+
+/// What is due at one moment of an interval. Evaluations at an offset come before new origins there; some new origins
+/// are compared with themselves at once (lag 0).
 struct Due {
-  enum class Kind : std::uint8_t { evaluate, new_origin };
+  enum class Kind : std::uint8_t { evaluate, new_origin, new_compared_origin };
   double offset = 0;  ///< since the start of the interval
   Kind kind = Kind::evaluate;
-  std::uint32_t level = 0;
-  std::uint32_t lag = 0;  ///< index into Schedule::lags (evaluate only)
+  std::uint32_t level = 0;  ///< where the origin is kept
+  std::uint32_t lag = 0;    ///< index into Schedule::lags (evaluate only)
 
   friend auto operator<=>(const Due&, const Due&) = default;
 };
@@ -59,14 +67,24 @@ struct Schedule {
   std::vector<double> lags;
   std::vector<std::uint32_t> level_of_lag;
   std::uint32_t levels = 0;
-  std::vector<Due> due;  ///< by offset
+  std::vector<Due> due;                ///< by offset
+  std::vector<std::uint64_t> origins;  ///< by lag: pairs of frames compared per interval
 
-  /// Origins of a level in one interval.
-  [[nodiscard]] std::uint64_t origins(std::uint32_t level, const MeasurementPlan& plan) const;
-  [[nodiscard]] std::size_t evaluations() const;  ///< pairs of frames compared per interval
+  [[nodiscard]] std::size_t evaluations() const;  ///< pairs of frames compared per interval, over all lags
   [[nodiscard]] std::size_t frames() const;       ///< distinct moments per interval
+  /// The lag that is nearest to `time` by its logarithm; lag 0 never.
+  [[nodiscard]] std::size_t nearest_lag(double time) const;
+  /// One lag per decade, at most six, from the longest down.
+  [[nodiscard]] std::vector<std::size_t> one_lag_per_decade() const;
 };
 
 Schedule make_schedule(const MeasurementPlan& plan);
+
+/// The schedule for stored frames, `frames` steps of which make an interval (plan.interval_length): lags are whole
+/// numbers of steps, log-spaced and the longest among them; every frame is an origin for all of them that end within
+/// the interval, or every so manieth where an interval has more than `most_origins` frames, which bounds the memory.
+/// `levels` counts the origins that are kept.
+inline constexpr std::uint64_t most_origins = 128;
+Schedule make_frame_schedule(const MeasurementPlan& plan, std::uint64_t frames);
 
 }  // namespace sandglass

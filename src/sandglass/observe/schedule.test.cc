@@ -37,7 +37,7 @@ TEST_CASE("every evaluation finds the origin it needs, for any plan") {
     for (const Due& due : schedule.due) {
       RC_ASSERT(due.offset >= last && due.offset <= plan.interval_length);
       last = due.offset;
-      if (due.kind == Due::Kind::new_origin) {
+      if (due.kind != Due::Kind::evaluate) {
         origin[due.level] = due.offset;
         continue;
       }
@@ -46,7 +46,8 @@ TEST_CASE("every evaluation finds the origin it needs, for any plan") {
       ++done[due.lag];
     }
     for (std::size_t lag = 1; lag < done.size(); ++lag)
-      RC_ASSERT(done[lag] == schedule.origins(schedule.level_of_lag[lag], plan));
+      RC_ASSERT(done[lag] == (schedule.level_of_lag[lag] == 0 ? 1 : plan.origins) &&
+                done[lag] == schedule.origins[lag]);
   });
   CHECK(ok);
 }
@@ -61,4 +62,42 @@ TEST_CASE("a plan costs at most one evaluation per four mean free times where an
   }
   CHECK(plan_measurement(0, 2500, 10, 0.025, 12, {}).origins == 8);
   CHECK_THROWS_AS(plan_measurement(0, 0.01, 10, 0.025, 12, {}), InputError);
+}
+
+TEST_CASE("stored frames: every pair within an interval at every lag, or every so manieth") {
+  for (const std::uint64_t frames : {1, 2, 7, 100, 128, 129, 1000}) {
+    MeasurementPlan plan;
+    plan.interval_length = 0.3 * static_cast<double>(frames);
+    plan.shortest_lag = 0.3;
+    const Schedule schedule = make_frame_schedule(plan, frames);
+    CHECK(schedule.levels <= most_origins);
+    CHECK(schedule.lags.back() == plan.interval_length);
+    const std::uint64_t stride = (frames + 127) / 128;
+    std::vector<double> origin(schedule.levels, -1);
+    for (const Due& due : schedule.due) {
+      if (due.kind != Due::Kind::evaluate) {
+        origin[due.level] = due.offset;
+        continue;
+      }
+      CHECK(origin[due.level] + schedule.lags[due.lag] == doctest::Approx(due.offset).epsilon(1e-12));
+    }
+    for (std::size_t lag = 1; lag < schedule.lags.size(); ++lag) {
+      const auto steps = static_cast<std::uint64_t>(std::llround(schedule.lags[lag] / 0.3));
+      CHECK(schedule.origins[lag] == (frames - steps) / stride + 1);
+    }
+  }
+}
+
+TEST_CASE("lags by their time: the nearest, and one per decade") {
+  MeasurementPlan plan;
+  plan.interval_length = 50;
+  plan.shortest_lag = 0.05;
+  const Schedule schedule = make_schedule(plan);
+  CHECK(schedule.nearest_lag(1e9) == schedule.lags.size() - 1);
+  CHECK(schedule.nearest_lag(1e-9) == 1);
+  CHECK(schedule.lags[schedule.nearest_lag(5.1)] == doctest::Approx(5));
+  const auto decades = schedule.one_lag_per_decade();
+  REQUIRE(decades.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i)
+    CHECK(schedule.lags[decades[i]] == doctest::Approx(0.05 * std::pow(10.0, static_cast<double>(i))).epsilon(1e-9));
 }

@@ -2,15 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
-
-#include "sandglass/core/errors.h"
-#include "sandglass/observe/cells.h"
+#include <numeric>
 
 namespace sandglass {
-namespace {
+
+double pair_count(const Population& population, std::size_t pair) {
+  const auto ns = static_cast<double>(population.range(small).size());
+  const auto nb = static_cast<double>(population.range(big).size());
+  return pair == 0 ? ns * (ns - 1) / 2 : pair == 1 ? ns * nb : nb * (nb - 1) / 2;
+}
+
+double contact_distance(const Population& population, std::size_t pair) {
+  const auto& radius = population.mixture.radius;
+  return radius[pair == 2 ? big : small] + radius[pair == 0 ? small : big];
+}
 
 std::vector<std::uint8_t> species_by_id(const Population& population) {
   std::vector<std::uint8_t> species(population.size(), small);
@@ -18,129 +25,58 @@ std::vector<std::uint8_t> species_by_id(const Population& population) {
   return species;
 }
 
-}  // namespace
-
-PairHistogram pair_histogram(const Population& population, double bin_width, double longest) {
-  if (!(bin_width > 0) || !(longest >= bin_width) || longest > population.box_length / 2)
-    throw InputError(
-        "g(r) needs a positive bin width and a range of at most half the box, because beyond it a ring "
-        "leaves the box; choose a shorter range.");
-  PairHistogram histogram;
-  histogram.bin_width = bin_width;
-  for (auto& counts : histogram.counts) counts.assign(static_cast<std::size_t>(longest / bin_width + 1e-9), 0);
-  return histogram;
-}
-
-void add_pairs(const Frame& frame, const Population& population, PairHistogram& histogram) {
-  const std::vector<std::uint8_t> species = species_by_id(population);
-  const std::size_t bins = histogram.counts[0].size();
-  const Cells cells(frame, population.box_length, static_cast<double>(bins) * histogram.bin_width);
-  std::vector<Cells::Neighbour> near;
-  for (std::uint32_t id = 0; id < frame.size(); ++id) {
-    cells.collect(id, 1, near);
-    for (const auto& neighbour : near) {
-      if (neighbour.id < id) continue;
-      const double bin = std::sqrt(neighbour.squared()) / histogram.bin_width;
-      if (bin < static_cast<double>(bins))
-        ++histogram.counts[species[id] + species[neighbour.id]][static_cast<std::size_t>(bin)];
-    }
+std::vector<double> radial_distribution(std::span<const std::uint64_t> counts, double inner, double width,
+                                        double pairs_per_area) {
+  std::vector<double> g;
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+    const double r1 = inner + static_cast<double>(bin) * width, r2 = r1 + width;
+    const double expected = pairs_per_area * std::numbers::pi * (r2 * r2 - r1 * r1);
+    g.push_back(expected > 0 ? static_cast<double>(counts[bin]) / expected : std::numeric_limits<double>::quiet_NaN());
   }
-  ++histogram.frames;
-}
-
-RadialDistribution radial_distribution(const PairHistogram& histogram, const Population& population) {
-  const auto ns = static_cast<double>(population.range(small).size());
-  const auto nb = static_cast<double>(population.range(big).size());
-  const double area = population.box_length * population.box_length;
-  const std::size_t bins = histogram.counts[0].size();
-  RadialDistribution g;
-  auto normalised = [&](double pairs, auto&& counted) {
-    std::vector<double> values(bins);
-    for (std::size_t b = 0; b < bins; ++b) {
-      const double inner = static_cast<double>(b) * histogram.bin_width, outer = inner + histogram.bin_width;
-      const double annulus = std::numbers::pi * (outer * outer - inner * inner);
-      const double expected = pairs * annulus / area * static_cast<double>(histogram.frames);
-      values[b] = expected > 0 ? static_cast<double>(counted(b)) / expected : std::numeric_limits<double>::quiet_NaN();
-    }
-    return values;
-  };
-  const auto& counts = histogram.counts;
-  for (std::size_t b = 0; b < bins; ++b) g.r.push_back((static_cast<double>(b) + 0.5) * histogram.bin_width);
-  g.small_small = normalised(ns * (ns - 1) / 2, [&](std::size_t b) { return counts[0][b]; });
-  g.small_big = normalised(ns * nb, [&](std::size_t b) { return counts[1][b]; });
-  g.big_big = normalised(nb * (nb - 1) / 2, [&](std::size_t b) { return counts[2][b]; });
-  g.all = normalised((ns + nb) * (ns + nb - 1) / 2,
-                     [&](std::size_t b) { return counts[0][b] + counts[1][b] + counts[2][b]; });
   return g;
 }
 
-double StructureFactor::at(int m, int n) const {
-  if (m < 0) return at(-m, -n);
-  return values[static_cast<std::size_t>(m) * static_cast<std::size_t>(2 * modes + 1) +
-                static_cast<std::size_t>(n + modes)];
+// The bins are centred at u = -7/2 ... 7/2, the edge is at u = -4; sum u^2 = 42, sum u^4 = 388.5.
+double edge_weight(std::size_t bin) {
+  const double u = static_cast<double>(bin) - 3.5;
+  return -4 * u / 42 + (86 * u * u - 283.5) / (8 * 388.5 - 42 * 42);
 }
 
-StructureFactor structure_factor(const Frame& frame, const Population& population, Range range, double longest) {
-  StructureFactor factor;
-  factor.spacing = 2 * std::numbers::pi / population.box_length;
-  factor.modes = static_cast<int>(longest / factor.spacing + 1e-9);
-  const auto rows = static_cast<std::size_t>(factor.modes) + 1, width = 2 * rows - 1;
-  std::vector<double> real(rows * width, 0.0), imaginary(rows * width, 0.0), cosine(width), sine(width);
-  for (std::size_t i = range.begin; i < range.end; ++i) {
-    const std::uint32_t id = population.order[i];
-    const auto step_x = std::polar(1.0, factor.spacing * frame.x[id]);
-    const auto step_y = std::polar(1.0, factor.spacing * frame.y[id]);
-    auto y = std::complex<double>(1);
-    for (std::size_t n = 0; n < rows; ++n, y *= step_y) {
-      cosine[rows - 1 + n] = cosine[rows - 1 - n] = y.real();
-      sine[rows - 1 + n] = y.imag();
-      sine[rows - 1 - n] = -y.imag();
-    }
-    auto x = std::complex<double>(1);
-    for (std::size_t m = 0; m < rows; ++m, x *= step_x) {
-      double* re = &real[m * width];
-      double* im = &imaginary[m * width];
-      const double c = x.real(), s = x.imag();
-      for (std::size_t n = 0; n < width; ++n) {
-        re[n] += c * cosine[n] - s * sine[n];
-        im[n] += c * sine[n] + s * cosine[n];
-      }
-    }
+namespace {
+
+/// g in `merged` equal parts of the first `bins` gap bins.
+std::vector<double> merged_distribution(std::span<const std::uint64_t> counts, std::size_t bins, std::size_t merged,
+                                        double contact, double pairs_per_area) {
+  std::vector<std::uint64_t> sums;
+  const std::size_t each = bins / merged;
+  for (std::size_t part = 0; part < merged; ++part) {
+    const auto first = counts.begin() + static_cast<std::ptrdiff_t>(part * each);
+    sums.push_back(std::accumulate(first, first + static_cast<std::ptrdiff_t>(each), std::uint64_t{0}));
   }
-  for (std::size_t k = 0; k < real.size(); ++k)
-    factor.values.push_back((real[k] * real[k] + imaginary[k] * imaginary[k]) / static_cast<double>(range.size()));
-  return factor;
+  const double width = contact * gap_range / gap_bins * static_cast<double>(each);
+  return radial_distribution(sums, contact, width, pairs_per_area);
 }
 
-RingAverage ring_average(const StructureFactor& factor, double width) {
-  struct Ring {
-    double k = 0, value = 0;
-    std::complex<double> sixfold;
-    std::uint64_t count = 0;
-  };
-  const double longest = factor.modes * factor.spacing * (1 + 1e-12);
-  std::vector<Ring> rings(static_cast<std::size_t>(longest / width) + 1);
-  for (int m = 0; m <= factor.modes; ++m) {
-    for (int n = m > 0 ? -factor.modes : 1; n <= factor.modes; ++n) {
-      const double k = factor.spacing * std::hypot(m, n);
-      if (k > longest) continue;
-      Ring& ring = rings[static_cast<std::size_t>(k / width)];
-      ring.k += k;
-      ring.value += factor.at(m, n);
-      ring.sixfold += factor.at(m, n) * std::polar(1.0, 6 * std::atan2(n, m));
-      ++ring.count;
-    }
+}  // namespace
+
+std::size_t contact_bins(std::span<const std::uint64_t> counts, double contact, double pairs_per_area,
+                         double packing_fraction) {
+  std::size_t bins = gap_bins;
+  for (int step = 0; step < 8; ++step) {
+    const double g = merged_distribution(counts, bins, 1, contact, pairs_per_area)[0];
+    const double wanted = 0.1 / (2 * packing_fraction * g) / gap_range * gap_bins;
+    const auto parts = static_cast<std::size_t>(std::clamp(wanted / edge_bins, 1.0, double{gap_bins} / edge_bins));
+    if (parts * edge_bins == bins) break;
+    bins = parts * edge_bins;
   }
-  RingAverage average;
-  for (const Ring& ring : rings) {
-    if (ring.count == 0) continue;
-    const auto count = static_cast<double>(ring.count);
-    average.wavenumber.push_back(ring.k / count);
-    average.value.push_back(ring.value / count);
-    average.anisotropy.push_back(ring.value > 0 ? std::abs(ring.sixfold) / ring.value : 0);
-    average.count.push_back(ring.count);
-  }
-  return average;
+  return bins;
+}
+
+double contact_value(std::span<const std::uint64_t> counts, std::size_t bins, double contact, double pairs_per_area) {
+  const std::vector<double> g = merged_distribution(counts, bins, edge_bins, contact, pairs_per_area);
+  double value = 0;
+  for (std::size_t bin = 0; bin < edge_bins; ++bin) value += edge_weight(bin) * g[bin];
+  return value;
 }
 
 }  // namespace sandglass

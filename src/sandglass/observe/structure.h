@@ -1,55 +1,50 @@
-// Static structure of one frame: radial distribution and structure factor.
+// Pairs of disks in space: the radial distribution function and its value at contact.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "sandglass/observe/population.h"
 
 namespace sandglass {
 
-/// Distances of pairs, counted by species (ss, sb, bb) in bins of equal width; frames may be added one after another.
-struct PairHistogram {
-  double bin_width = 0;
-  std::array<std::vector<std::uint64_t>, 3> counts;
-  std::uint64_t frames = 0;
-};
+/// Pairs of species in the order of Tally::contacts; `species[i] + species[j]` is the place of a pair.
+inline constexpr std::array<const char*, 3> species_pairs{"small_small", "small_big", "big_big"};
 
-/// An empty histogram up to `longest` <= L/2 (beyond it an annulus leaves the box). Throws InputError otherwise.
-PairHistogram pair_histogram(const Population& population, double bin_width, double longest);
+/// Number of pairs: N_a (N_a - 1) / 2 within a species, N_a N_b across.
+double pair_count(const Population& population, std::size_t pair);
 
-/// Counts every pair of `frame` once.
-void add_pairs(const Frame& frame, const Population& population, PairHistogram& histogram);
+/// Contact distance R_i + R_j of a pair of species.
+double contact_distance(const Population& population, std::size_t pair);
 
-/// g(r) by pairs of species, and for all: counted pairs over those expected for independent uniform disks,
-/// pairs * (annulus area pi (r2^2 - r1^2)) / L^2, with N_a (N_a - 1) / 2 pairs within a species and N_a N_b across.
-struct RadialDistribution {
-  std::vector<double> r;  ///< middle of each bin
-  std::vector<double> all, small_small, small_big, big_big;
-};
-RadialDistribution radial_distribution(const PairHistogram& histogram, const Population& population);
+/// Species of each disk, by id.
+std::vector<std::uint8_t> species_by_id(const Population& population);
 
-/// S(k) = |sum_j exp(-i k.r_j)|^2 / N over the disks of `range`, k = (2 pi / L)(m, n) with 0 <= m <= M, -M <= n <= M
-/// and M = floor(longest L / 2 pi); S(-k) = S(k). The mode (0, 0) holds N.
-struct StructureFactor {
-  int modes = 0;               ///< M
-  double spacing = 0;          ///< 2 pi / L
-  std::vector<double> values;  ///< [m, n + M]
-  [[nodiscard]] double at(int m, int n) const;
-};
-StructureFactor structure_factor(const Frame& frame, const Population& population, Range range, double longest);
+/// g(r) in rings of equal `width`, the first of which starts at `inner`: counted pairs over those expected for
+/// independent uniform disks, pairs_per_area * pi (r2^2 - r1^2) with the exact area of each ring. `pairs_per_area` is
+/// pair_count / L^2 times the number of frames; NaN where it is zero.
+std::vector<double> radial_distribution(std::span<const std::uint64_t> counts, double inner, double width,
+                                        double pairs_per_area);
 
-/// Ring averages of S(k) in bins of `width` up to the longest |k| that is covered in all directions; empty rings are
-/// left out.
-struct RingAverage {
-  std::vector<double> wavenumber;  ///< mean |k| of the ring
-  std::vector<double> value;
-  /// |<S e^{6 i phi}>| / <S>: zero for isotropic rings (the square's own directions cancel exactly) up to noise of
-  /// about 1/sqrt(count), 1 for six sharp spots.
-  std::vector<double> anisotropy;
-  std::vector<std::uint64_t> count;
-};
-RingAverage ring_average(const StructureFactor& factor, double width);
+/// Extrapolates what was counted in eight bins of equal width beside contact to contact: the least-squares parabola
+/// through the eight, taken at the outer edge of the first, is the sum of edge_weight(bin) * value.
+inline constexpr std::size_t edge_bins = 8;
+double edge_weight(std::size_t bin);
+
+/// Pairs by their gap, in contact distances: equal bins from 0 to gap_range.
+inline constexpr std::size_t gap_bins = 1024;
+inline constexpr double gap_range = 0.12;
+
+/// How many of the gap bins the extrapolation to contact may use: g falls off over a gap of about 1 / (Z - 1), and
+/// inelastic disks, which stay together after a collision, over less [see contact_range]; taken is a tenth of it with
+/// Z - 1 = 2 eta g(contact), a multiple of eight bins. `counts`, `pairs_per_area` as in radial_distribution.
+std::size_t contact_bins(std::span<const std::uint64_t> counts, double contact, double pairs_per_area,
+                         double packing_fraction);
+
+/// g at contact from the first `bins` gap bins.
+double contact_value(std::span<const std::uint64_t> counts, std::size_t bins, double contact, double pairs_per_area);
 
 }  // namespace sandglass

@@ -2,11 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
-#include "sandglass/core/errors.h"
 #include "sandglass/core/random.h"
+#include "sandglass/observe/cells.h"
 
 using namespace sandglass;
 
@@ -34,94 +35,73 @@ System ideal_gas(std::size_t n, double box_length, std::uint64_t seed) {
   return system;
 }
 
-}  // namespace
-
-TEST_CASE("g(r) of an ideal gas is 1 in every pair of species") {
-  const System system = ideal_gas(3000, 60, 3);
-  PairHistogram histogram = pair_histogram(system.population, 0.5, 10);
-  add_pairs(system.frame, system.population, histogram);
-  const RadialDistribution g = radial_distribution(histogram, system.population);
-  REQUIRE(g.r.size() == 20);
-  for (std::size_t b = 0; b < 20; ++b) {
-    CHECK(g.r[b] == doctest::Approx(0.25 + 0.5 * static_cast<double>(b)));
-    // Counts are Poisson to good accuracy: sigma = 1 / sqrt(expected), five of them.
-    const double share = std::numbers::pi * 0.5 * (2 * g.r[b]) / 3600;
-    CHECK(std::fabs(g.small_small[b] - 1) < 5 / std::sqrt(share * 2000 * 1999 / 2));
-    CHECK(std::fabs(g.small_big[b] - 1) < 5 / std::sqrt(share * 2000 * 1000));
-    CHECK(std::fabs(g.big_big[b] - 1) < 5 / std::sqrt(share * 1000 * 999 / 2));
-    CHECK(std::fabs(g.all[b] - 1) < 5 / std::sqrt(share * 3000 * 2999 / 2));
-  }
-  CHECK_THROWS_AS(pair_histogram(system.population, 0.5, 31), InputError);
+// Pairs counted by distance, for each pair of species.
+std::array<std::vector<std::uint64_t>, 3> count_pairs(const System& system, double width, std::size_t bins) {
+  std::array<std::vector<std::uint64_t>, 3> counts;
+  for (auto& list : counts) list.resize(bins);
+  const std::vector<std::uint8_t> species = species_by_id(system.population);
+  const double range = width * static_cast<double>(bins);
+  const Cells cells(system.frame.x, system.frame.y, system.population.box_length, range / 4);
+  cells.for_each_pair(range, [&](std::uint32_t i, std::uint32_t j, double, double, double squared) {
+    const auto bin = static_cast<std::size_t>(std::sqrt(squared) / width);
+    if (bin < bins) ++counts[species[i] + species[j]][bin];
+  });
+  return counts;
 }
 
+}  // namespace
+
 TEST_CASE("pairs are counted as by brute force, in few and in many cells") {
-  for (const double longest : {2.0, 9.0, 20.0}) {
+  for (const std::size_t bins : {8, 36, 80}) {
     const System system = ideal_gas(300, 40, 12);
-    PairHistogram histogram = pair_histogram(system.population, 0.25, longest);
-    add_pairs(system.frame, system.population, histogram);
-    PairHistogram brute = pair_histogram(system.population, 0.25, longest);
+    std::array<std::vector<std::uint64_t>, 3> brute;
+    for (auto& list : brute) list.resize(bins);
     for (std::size_t i = 0; i < 300; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
         double dx = system.frame.x[i] - system.frame.x[j], dy = system.frame.y[i] - system.frame.y[j];
         dx -= 40 * std::round(dx / 40);
         dy -= 40 * std::round(dy / 40);
         const auto bin = static_cast<std::size_t>(std::hypot(dx, dy) / 0.25);
-        if (bin < brute.counts[0].size()) ++brute.counts[(i % 3 == 1) + (j % 3 == 1)][bin];
+        if (bin < bins) ++brute[(i % 3 == 1) + (j % 3 == 1)][bin];
       }
     }
-    CHECK(histogram.counts == brute.counts);
+    CHECK(count_pairs(system, 0.25, bins) == brute);
   }
 }
 
-TEST_CASE("S(k) of a square lattice: N at the reciprocal lattice, else nothing") {
-  constexpr int cells = 8;
-  State state;
-  state.box_length = 24;
-  state.disks.resize(cells * cells);
-  for (int i = 0; i < cells * cells; ++i) {
-    state.disks[static_cast<std::size_t>(i)].x = 3.0 * (i % cells) + 0.7;
-    state.disks[static_cast<std::size_t>(i)].y = 3.0 * (i / cells) + 0.1;
-  }
-  const Population population = population_of(state);
-  Frame frame;
-  make_frame(state, frame);
-  const StructureFactor s =
-      structure_factor(frame, population, population.range(small), 20 * 2 * std::numbers::pi / 24);
-  REQUIRE(s.modes == 20);
-  for (int m = -20; m <= 20; ++m) {
-    for (int n = -20; n <= 20; ++n) {
-      const double expected = m % cells == 0 && n % cells == 0 ? 64 : 0;
-      // Amplitudes of 64 unit vectors, phases good to 1e-13: 64 * 1e-12 in |sum|^2 / N.
-      CHECK(std::fabs(s.at(m, n) - expected) < 1e-9);
+TEST_CASE("g(r) of an ideal gas is 1 in every pair of species") {
+  const System system = ideal_gas(3000, 60, 3);
+  const auto counts = count_pairs(system, 0.5, 20);
+  for (std::size_t pair = 0; pair < 3; ++pair) {
+    const double per_area = pair_count(system.population, pair) / 3600;
+    const std::vector<double> g = radial_distribution(counts[pair], 0, 0.5, per_area);
+    for (std::size_t b = 0; b < 20; ++b) {
+      // Counts are Poisson to good accuracy: sigma = 1 / sqrt(expected), five of them.
+      const double expected = per_area * std::numbers::pi * 0.5 * (2 * 0.5 * (static_cast<double>(b) + 0.5));
+      CHECK(std::fabs(g[b] - 1) < 5 / std::sqrt(expected));
     }
   }
-  // Rings: the first spots at k = 8 units are 2 of the ring's vectors.
-  const RingAverage ring = ring_average(s, s.spacing);
-  for (std::size_t i = 0; i < ring.value.size(); ++i) {
-    const bool spots = std::fabs(ring.wavenumber[i] / s.spacing - 8.5) < 0.5;
-    if (spots) CHECK(ring.value[i] == doctest::Approx(2 * 64 / static_cast<double>(ring.count[i])));
-  }
 }
 
-TEST_CASE("S(k) of an ideal gas is 1 on rings, isotropic") {
-  const System system = ideal_gas(2000, 50, 21);
-  const Range range = system.population.range(small);
-  const StructureFactor s = structure_factor(system.frame, system.population, range, 3);
-  // One mode straight from the definition.
-  double re = 0, im = 0;
-  for (std::size_t i = 0; i < range.size(); ++i) {
-    const std::uint32_t id = system.population.order[i];
-    const double phase = 2 * std::numbers::pi / 50 * (7 * system.frame.x[id] - 11 * system.frame.y[id]);
-    re += std::cos(phase);
-    im += std::sin(phase);
+TEST_CASE("g at contact: a parabola is met exactly, and the range shrinks as g grows") {
+  // Counts of a g(x) = g0 (1 - 40 x + 500 x^2) in the gap x; rounded to whole pairs of some 10^7, hence 1e-6.
+  const double contact = 2.43, g0 = 9, per_area = 1e10;
+  std::vector<std::uint64_t> counts(gap_bins);
+  // Means over a bin of width w exceed the middle's value by g0 500 w^2 / 12, which shifts the whole parabola.
+  for (std::size_t b = 0; b < gap_bins; ++b) {
+    const double w = gap_range / gap_bins, x = (static_cast<double>(b) + 0.5) * w;
+    const double ring =
+        std::numbers::pi * contact * contact * (std::pow(1 + x + w / 2, 2) - std::pow(1 + x - w / 2, 2));
+    counts[b] = static_cast<std::uint64_t>(std::llround(per_area * ring * g0 * (1 - 40 * x + 500 * x * x)));
   }
-  CHECK(s.at(7, -11) == doctest::Approx((re * re + im * im) / static_cast<double>(range.size())).epsilon(1e-9));
-  CHECK(s.at(-7, 11) == s.at(7, -11));
-  const RingAverage ring = ring_average(s, 0.3);
-  for (std::size_t i = 0; i < ring.value.size(); ++i) {
-    // A mode is exponential with mean and sigma 1; |<S e^{6 i phi}>| has sigma 1 / sqrt(count) in all, five of them.
-    const double sigma = 1 / std::sqrt(static_cast<double>(ring.count[i]));
-    CHECK(std::fabs(ring.value[i] - 1) < 5 * sigma);
-    if (ring.count[i] > 30) CHECK(ring.anisotropy[i] < 5 * sigma);
-  }
+  const std::size_t bins = contact_bins(counts, contact, per_area, 0.7);
+  // A tenth of 1 / (2 eta g) with g ~ 0.9 g0 is 0.0088: about 75 of 1024 bins.
+  CHECK(bins % 8 == 0);
+  CHECK(bins > 56);
+  CHECK(bins < 96);
+  CHECK(contact_value(counts, bins, contact, per_area) == doctest::Approx(g0).epsilon(1e-4));
+  CHECK(contact_bins(counts, contact, per_area, 0.07) > 6 * bins);
+  double weights = 0;
+  for (std::size_t b = 0; b < edge_bins; ++b) weights += edge_weight(b);
+  CHECK(weights == doctest::Approx(1).epsilon(1e-12));
 }

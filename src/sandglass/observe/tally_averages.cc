@@ -15,6 +15,21 @@ double difference(const ExactSum& begin, const ExactSum& end) {
 
 }  // namespace
 
+IntervalFlows interval_flows(std::span<const Tally> boundaries, double interval_length,
+                             std::span<const double> temperatures, std::size_t disks) {
+  const auto n = static_cast<double>(disks);
+  IntervalFlows flows;
+  for (std::size_t i = 0; i + 1 < boundaries.size() && i < temperatures.size(); ++i) {
+    const Tally &begin = boundaries[i], &end = boundaries[i + 1];
+    const double excess =
+        difference(begin.virial, end.virial) / (2 * temperatures[i]) * (n - 1) / n / (n * interval_length);
+    flows.compressibility_factor.push_back(1 + excess);
+    flows.injected.push_back(difference(begin.injected, end.injected) / (n * interval_length));
+    flows.dissipated.push_back(difference(begin.dissipated, end.dissipated) / (n * interval_length));
+  }
+  return flows;
+}
+
 TallyAverages tally_averages(std::span<const Tally> boundaries, double interval_length,
                              std::span<const double> temperatures, std::array<std::size_t, species_count> disks) {
   if (boundaries.size() < 2 || temperatures.size() + 1 != boundaries.size())
@@ -44,15 +59,10 @@ TallyAverages tally_averages(std::span<const Tally> boundaries, double interval_
       return counted(i, [&](const Tally& t) { return t.kicked[a]; });
     });
   }
-  averages.injected =
-      rate(n, [&](std::size_t i) { return difference(boundaries[i].injected, boundaries[i + 1].injected); });
-  averages.dissipated =
-      rate(n, [&](std::size_t i) { return difference(boundaries[i].dissipated, boundaries[i + 1].dissipated); });
-  const Estimate excess = rate(n, [&](std::size_t i) {
-    const double virial = difference(boundaries[i].virial, boundaries[i + 1].virial);
-    return virial / (2 * temperatures[i]) * (n - 1) / n;
-  });
-  averages.compressibility_factor = {1 + excess.value, excess.error};
+  const IntervalFlows flows = interval_flows(boundaries, interval_length, temperatures, disks[small] + disks[big]);
+  averages.injected = mean_of_intervals(flows.injected);
+  averages.dissipated = mean_of_intervals(flows.dissipated);
+  averages.compressibility_factor = mean_of_intervals(flows.compressibility_factor);
 
   const std::uint64_t collisions = boundaries.back().collisions() - boundaries.front().collisions();
   const std::uint64_t elastic = boundaries.back().elastic_contacts - boundaries.front().elastic_contacts;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "sandglass/core/state.h"
 #include "sandglass/observe/interval_series.h"
@@ -19,6 +20,16 @@ struct TallyAverages {
   std::array<Estimate, species_count> kick_rate;  ///< kicks per disk of the species and time
   double elastic_fraction = 0;                    ///< collisions made elastic by the TC model
 };
+
+/// One value per interval.
+struct IntervalFlows {
+  std::vector<double> compressibility_factor;
+  std::vector<double> injected, dissipated;  ///< energy per disk and time
+};
+
+/// From the same as tally_averages below, by the same formulas.
+IntervalFlows interval_flows(std::span<const Tally> boundaries, double interval_length,
+                             std::span<const double> temperatures, std::size_t disks);
 
 /// From tallies at the interval boundaries (intervals + 1 of them) and the mean temperature of each interval.
 ///

@@ -1,6 +1,8 @@
 #include "sandglass/study/measurement.h"
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "sandglass/core/errors.h"
 
@@ -28,8 +30,12 @@ std::array<std::size_t, species_count> disk_counts(const Population& population)
 /// Nothing is allocated on the word of a checkpoint: what sets the size of the observers is in the configuration too.
 void check_plan(const MeasurementPlan& plan, const Config& config) {
   constexpr double widest = 1e15;  // longest by shortest lag; 10^12 collisions per disk span less
-  const bool configured = plan.intervals == config.run.intervals && plan.wavenumbers == config.observe.wavenumbers &&
-                          plan.lags_per_decade == config.observe.lags_per_decade;
+  const Config::Observe& observe = config.observe;
+  const bool configured = plan.intervals == config.run.intervals && plan.wavenumbers == observe.wavenumbers &&
+                          plan.lags_per_decade == observe.lags_per_decade &&
+                          plan.overlap_length == observe.overlap_length &&
+                          plan.selection_time == observe.selection_time && plan.bin_width == observe.bin_width &&
+                          plan.structure_frames <= observe.structure_frames;
   if (!configured || !std::isfinite(plan.start) || plan.start < 0 || !std::isfinite(plan.end()) ||
       !(plan.interval_length <= widest * plan.shortest_lag) || plan.temperature_samples > 10000)
     throw InputError("the checkpoint is damaged: what it measures is not what is configured");
@@ -45,6 +51,7 @@ void Measurement::begin(const MeasurementPlan& plan, const Tally& boundary) {
   boundaries_ = {boundary};
   correlator_.emplace(plan_, population_);
   averages_.emplace(plan_, population_);
+  structure_.emplace(plan_, population_);
 }
 
 TallyAverages Measurement::tally_averages() const {
@@ -55,9 +62,21 @@ TallyAverages Measurement::tally_averages() const {
 std::vector<Dataset> Measurement::results() const {
   std::vector<Dataset> datasets = timeseries_.results();
   if (!begun()) return datasets;
-  for (const auto& more : {correlator_->results(), averages_->results()})
+  for (const auto& more : {correlator_->results(), averages_->results(), structure_->results()})
     datasets.insert(datasets.end(), more.begin(), more.end());
+  append_flows(datasets);
   return datasets;
+}
+
+void Measurement::append_flows(std::vector<Dataset>& datasets) const {
+  IntervalFlows flows = interval_flows(boundaries_, plan_.interval_length, averages_->interval_temperatures(Group::all),
+                                       population_.size());
+  const auto add = [&](const char* name, std::vector<double>& values, const char* unit) {
+    datasets.push_back({std::string("/timeseries/intervals/") + name, {values.size()}, std::move(values), unit});
+  };
+  add("compressibility_factor", flows.compressibility_factor, "");
+  add("injected", flows.injected, "m_s R_s^2/t^3");
+  add("dissipated", flows.dissipated, "m_s R_s^2/t^3");
 }
 
 std::vector<FieldGroup> Measurement::fields() {
@@ -67,6 +86,7 @@ std::vector<FieldGroup> Measurement::fields() {
   if (begun()) {
     stored.push_back({"correlator", correlator_->fields()});
     stored.push_back({"averages", averages_->fields()});
+    stored.push_back({"structure", structure_->fields()});
   }
   return stored;
 }
@@ -91,7 +111,7 @@ void Measurement::store_boundaries() {
 }
 
 void Measurement::finish_restore() {
-  if (!timeseries_.valid() || (begun() && !(correlator_->valid() && averages_->valid())))
+  if (!timeseries_.valid() || (begun() && !(correlator_->valid() && averages_->valid() && structure_->valid())))
     throw InputError("the checkpoint is damaged: it stands at no time of its measurement");
   if (stored_counts_.size() % count_columns != 0 || stored_sums_.size() % sum_columns != 0 ||
       stored_counts_.size() / count_columns != stored_sums_.size() / sum_columns)

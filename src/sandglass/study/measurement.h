@@ -9,6 +9,7 @@
 #include "sandglass/io/config.h"
 #include "sandglass/observe/correlator.h"
 #include "sandglass/observe/observer.h"
+#include "sandglass/observe/structure_sampler.h"
 #include "sandglass/observe/tally_averages.h"
 #include "sandglass/observe/thermodynamics.h"
 
@@ -37,12 +38,13 @@ class Measurement {
     for (; boundaries_.size() <= plan_.intervals && plan_.interval_start(boundaries_.size()) <= end;
          boundaries_.push_back(engine.tally()))
       sandglass::run_until(engine, plan_.interval_start(boundaries_.size()), frame_, timeseries_, *correlator_,
-                           *averages_, extra);
-    sandglass::run_until(engine, end, frame_, timeseries_, *correlator_, *averages_, extra);
+                           *averages_, *structure_, extra);
+    sandglass::run_until(engine, end, frame_, timeseries_, *correlator_, *averages_, *structure_, extra);
   }
 
   [[nodiscard]] const Correlator& correlator() const { return *correlator_; }
   [[nodiscard]] const IntervalAverages& averages() const { return *averages_; }
+  [[nodiscard]] const StructureSampler& structure() const { return *structure_; }
   [[nodiscard]] const std::vector<Tally>& boundaries() const { return boundaries_; }
   [[nodiscard]] TallyAverages tally_averages() const;
   [[nodiscard]] std::vector<Dataset> results() const;
@@ -57,6 +59,7 @@ class Measurement {
   void finish_restore();
 
  private:
+  void append_flows(std::vector<Dataset>& datasets) const;
   void store_boundaries();
 
   Population population_;
@@ -65,6 +68,7 @@ class Measurement {
   Timeseries timeseries_;
   std::optional<Correlator> correlator_;
   std::optional<IntervalAverages> averages_;
+  std::optional<StructureSampler> structure_;
   std::vector<Tally> boundaries_;  ///< at the start of the measured stretch and the end of each interval
   std::vector<std::uint64_t> stored_counts_;
   std::vector<ExactSum> stored_sums_;

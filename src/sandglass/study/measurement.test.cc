@@ -67,6 +67,7 @@ TEST_CASE("a checkpoint that stands where no measurement can is refused before i
   }
   CHECK(complaint("correlator", "due", none) != "");
   CHECK(complaint("averages", "taken", none) != "");
+  CHECK(complaint("structure", "taken", none) != "");
   CHECK(complaint("timeseries", "next", none) != "");
   CHECK(complaint<std::uint64_t>("timeseries", "runs", 0) != "");
   CHECK(complaint("tallies", "counts", std::vector<std::uint64_t>(10)) != "");

@@ -310,8 +310,12 @@ void PointRun::begin_measuring() {
   const auto intervals = static_cast<double>(config_.run.intervals);
   double interval = (end - start) / intervals;
   while (start + intervals * interval > end) interval = std::nextafter(interval, 0.0);  // no sample after the last beat
-  const MeasurementPlan plan = plan_measurement(start, interval, config_.run.intervals, 1 / rate,
-                                                config_.observe.lags_per_decade, config_.observe.wavenumbers);
+  MeasurementPlan plan = plan_measurement(start, interval, config_.run.intervals, 1 / rate,
+                                          config_.observe.lags_per_decade, config_.observe.wavenumbers);
+  plan.overlap_length = config_.observe.overlap_length;
+  plan.selection_time = config_.observe.selection_time;
+  plan.bin_width = config_.observe.bin_width;
+  plan.structure_frames = affordable_structure_frames(config_.observe.structure_frames, plan, 1 / rate);
   measurement_->begin(plan, simulation_->tally());
   frames_->begin(plan);
   facts_.start_energy = kinetic_energy(simulation_->state());

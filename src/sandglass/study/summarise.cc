@@ -26,6 +26,60 @@ void describe_motion(const Correlator& correlator, Summary& summary) {
   fill(Group::big, summary.msd_exponent.big, summary.msd_unit_time.big, "big");
 }
 
+/// D per collision at s = 1000 [the paper's], or at the longest lag where that is shorter.
+Summary::Diffusion diffusion_of(const Correlator& correlator, Group group) {
+  constexpr double paper_collisions = 1000;
+  const double rate = correlator.collision_rate();
+  const IntervalSeries displacements = correlator.mean_square_displacement(group);
+  const double time = std::fmin(paper_collisions / rate, displacements.time.back());
+  const Estimate slope = diffusion_coefficient(displacements, time);
+  const GreenKubo integral = diffusion_from_velocities(correlator.velocity_autocorrelation(group), time);
+  return {slope.value / rate,
+          slope.error / rate,
+          time * rate,
+          integral.diffusion.value / rate,
+          integral.diffusion.error / rate,
+          integral.end * rate};
+}
+
+void describe_relaxation(const Correlator& correlator, Summary& summary) {
+  summary.diffusion = {diffusion_of(correlator, Group::small), diffusion_of(correlator, Group::big),
+                       diffusion_of(correlator, Group::all)};
+  constexpr double level = 0.5;
+  const std::vector<double>& wavenumbers = correlator.plan().wavenumbers;
+  for (std::size_t k = 0; k < wavenumbers.size(); ++k) {
+    const Estimate small_disks = decay_time(correlator.self_intermediate_scattering(Group::small, k), level);
+    const Estimate big_disks = decay_time(correlator.self_intermediate_scattering(Group::big, k), level);
+    summary.relaxation_time.push_back(
+        {wavenumbers[k], small_disks.value, small_disks.error, big_disks.value, big_disks.error});
+  }
+}
+
+void describe_structure(const StructureSampler& structure, Summary& summary) {
+  const auto note = [&](double& target, const std::string& name, const Estimate& estimate) {
+    target = estimate.value;
+    summary.errors.emplace_back(name, estimate.error);
+  };
+  note(summary.contact_value.small_small, "contact_value_small_small", structure.contact_value(0));
+  note(summary.contact_value.small_big, "contact_value_small_big", structure.contact_value(1));
+  note(summary.contact_value.big_big, "contact_value_big_big", structure.contact_value(2));
+  note(summary.bond_order.global, "bond_order_global", structure.global_bond_order());
+  note(summary.bond_order.local, "bond_order_local", structure.local_bond_order());
+  note(summary.velocity_correlation_length, "velocity_correlation_length", structure.velocity_correlation_length());
+  summary.anisotropy = {structure.anisotropy(Group::all), structure.anisotropy(Group::small)};
+}
+
+void describe_partners(const TallyAverages& averages, Summary& summary) {
+  const auto note = [&](double& target, const char* name, Species a, Species b) {
+    target = averages.partner_rate[a][b].value;
+    summary.errors.emplace_back(std::string("collision_rate_") + name, averages.partner_rate[a][b].error);
+  };
+  note(summary.collision_rate_by_pair.small_small, "small_small", small, small);
+  note(summary.collision_rate_by_pair.small_big, "small_big", small, big);
+  note(summary.collision_rate_by_pair.big_small, "big_small", big, small);
+  note(summary.collision_rate_by_pair.big_big, "big_big", big, big);
+}
+
 void describe_energy(const State& end, const TallyAverages& averages, const RunFacts& facts, Summary& summary) {
   const double disks = static_cast<double>(end.size());
   summary.energy.injected = averages.injected.value * summary.time;
@@ -102,6 +156,12 @@ void judge(const Config& config, const Measurement& measurement, Summary& summar
 
 }  // namespace
 
+void summarise_frames(const Correlator& correlator, const StructureSampler& structure, Summary& summary) {
+  describe_motion(correlator, summary);
+  describe_relaxation(correlator, summary);
+  describe_structure(structure, summary);
+}
+
 Summary summarise(const Config& config, const State& end, const Measurement& measurement, const RunFacts& facts) {
   const TallyAverages averages = measurement.tally_averages();
   const IntervalAverages& intervals = measurement.averages();
@@ -143,7 +203,8 @@ Summary summarise(const Config& config, const State& end, const Measurement& mea
 
   if (config.run.threads > 1)
     summary.decisions.push_back("One trajectory runs on one core in this version; run.threads had no effect.");
-  describe_motion(measurement.correlator(), summary);
+  summarise_frames(measurement.correlator(), measurement.structure(), summary);
+  describe_partners(averages, summary);
   describe_energy(end, averages, facts, summary);
   describe_drive(config, end, facts, summary);
   describe_collapse(config, end, summary);

@@ -20,4 +20,7 @@ struct RunFacts {
 /// The summary, with what the program decided by itself and what the reader must be warned of.
 Summary summarise(const Config& config, const State& end, const Measurement& measurement, const RunFacts& facts);
 
+/// The part of a summary that frames alone allow: motion, relaxation, structure.
+void summarise_frames(const Correlator& correlator, const StructureSampler& structure, Summary& summary);
+
 }  // namespace sandglass
