@@ -1,9 +1,7 @@
 #include "sandglass/study/campaign.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <fstream>
@@ -21,13 +19,6 @@ std::string label(const SweepPlan& plan, const Config& config) {
   std::string text;
   for (const std::string& axis : plan.axes) text += fmt::format("{} = {}, ", axis, value_text(config, axis));
   return text + fmt::format("run.seed = {}", config.run.seed);
-}
-
-/// The points that are there: configuration by row of the manifest.
-std::vector<Config> configs_of(const Manifest& manifest) {
-  std::vector<Config> configs;
-  for (const ManifestRow& row : manifest.rows) configs.push_back(read_point(manifest, row));
-  return configs;
 }
 
 class Comparison {
@@ -104,15 +95,9 @@ void check_place(const std::filesystem::path& folder, const Config& config) {
 
 }  // namespace
 
-CampaignChange plan_campaign(const SweepPlan& plan, const std::filesystem::path& folder) {
-  if (std::filesystem::exists(folder / "config.toml"))
-    throw InputError(fmt::format("{} holds a single run: give another folder with -o", folder.string()));
-  Manifest manifest{.folder = folder, .axes = {}, .rows = {}};
-  if (std::filesystem::exists(manifest_in(folder))) manifest = read_manifest(manifest_in(folder));
-  const std::vector<Config> present = configs_of(manifest);
-
+CampaignChange extend(const SweepPlan& plan, const Manifest& manifest, const std::vector<Config>& present) {
   CampaignChange change;
-  change.manifest.folder = folder;
+  change.manifest.folder = manifest.folder;
   change.manifest.axes = joined(manifest.axes, plan.axes);
   std::uint64_t last_index = 0;
   std::unordered_set<std::string> taken;
@@ -132,11 +117,24 @@ CampaignChange plan_campaign(const SweepPlan& plan, const std::filesystem::path&
     }
     std::string path = "runs/" + names[i];
     for (int copy = 2; !taken.insert(path).second; ++copy) path = fmt::format("runs/{}-{}", names[i], copy);
-    check_place(folder / path, plan.points[i]);
     change.manifest.rows.push_back(row_of(plan.points[i], ++last_index, path, change.manifest.axes));
     change.added.push_back(plan.points[i]);
   }
   change.dropped = comparison.dropped();
+  return change;
+}
+
+CampaignChange plan_campaign(const SweepPlan& plan, const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder / "config.toml"))
+    throw InputError(fmt::format("{} holds a single run: give another folder with -o", folder.string()));
+  Manifest manifest{.folder = folder, .axes = {}, .rows = {}};
+  if (std::filesystem::exists(manifest_in(folder))) manifest = read_manifest(manifest_in(folder));
+  std::vector<Config> present;
+  for (const ManifestRow& row : manifest.rows) present.push_back(read_point(manifest, row));
+  CampaignChange change = extend(plan, manifest, present);
+  const std::size_t first = manifest.rows.size();
+  for (std::size_t i = 0; i < change.added.size(); ++i)
+    check_place(change.manifest.run_folder(change.manifest.rows[first + i]), change.added[i]);
   return change;
 }
 
@@ -165,7 +163,7 @@ void make_folder(const std::filesystem::path& folder, Undo& undo) {
   if (error) fail_to_write(folder, error.value());
 }
 
-/// A new file; flushed to the disk with all others at once, by sync_file_system.
+/// A new file. It is not waited for to be on the disk: ten thousand of them would take minutes.
 void write_new(const std::filesystem::path& path, const std::string& text, Undo& undo) {
   errno = 0;
   std::ofstream file(path, std::ios::binary);
@@ -173,13 +171,6 @@ void write_new(const std::filesystem::path& path, const std::string& text, Undo&
   file << text;
   file.close();
   if (!file) fail_to_write(path, errno == 0 ? EIO : errno);
-}
-
-void sync_file_system(const std::filesystem::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::syncfs(descriptor);
-  ::close(descriptor);
 }
 
 }  // namespace
@@ -195,7 +186,6 @@ void write_campaign(const CampaignChange& change, const std::string& study_text)
     if (!std::filesystem::exists(folder / "config.toml"))
       write_new(folder / "config.toml", config_to_toml(change.added[i]), undo);
   }
-  sync_file_system(manifest.folder);
   write_whole(manifest.folder / "study.toml", study_text);
   write_manifest(manifest_in(manifest.folder), manifest);
   undo.forget();

@@ -18,9 +18,13 @@ struct CampaignChange {
   std::vector<std::string> dropped;  ///< paths of those that are there, but no longer in the plan; they stay
 };
 
-/// Compares; writes nothing. A point is the same if all its physics keys are. New ones get the next free indices and
-/// names. Throws InputError where the study now gives other physics to a point that is there (the same axes and seed),
-/// where a folder of a new point is taken, or the manifest is damaged.
+/// What becomes of a manifest whose rows have the configurations `present`. A point is the same if all its physics keys
+/// are. New ones get the next free indices and names. Throws InputError where the study now gives other physics to a
+/// point that is there (the same axes and seed).
+CampaignChange extend(const SweepPlan& plan, const Manifest& manifest, const std::vector<Config>& present);
+
+/// The same for what is in a folder; writes nothing. Throws InputError also where the folder of a new point is taken or
+/// the manifest is damaged.
 CampaignChange plan_campaign(const SweepPlan& plan, const std::filesystem::path& folder);
 
 /// Makes runs/NAME/config.toml of the points that are new, study.toml (a copy of `study_text`) and manifest.tsv, the

@@ -31,7 +31,7 @@ std::uint64_t whole_number(const std::string& text, const char* column, const st
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (text.empty() || error != std::errc() || end != text.data() + text.size())
-    throw InputError(fmt::format("{}: {} must be a whole number, not \"{}\"", place, column, text));
+    throw InputError(fmt::format("{}: {} must be a whole number, not {}", place, column, toml_quote(text)));
   return value;
 }
 
@@ -42,8 +42,8 @@ std::string checked_path(const std::string& text, const std::string& place) {
                       std::none_of(path.begin(), path.end(), [](const auto& part) { return part == ".."; }) &&
                       path.lexically_normal() != ".";
   if (!inside)
-    throw InputError(
-        fmt::format("{}: path \"{}\" must lead to a folder below that of the manifest, such as runs/a", place, text));
+    throw InputError(fmt::format("{}: path {} must lead to a folder below that of the manifest, such as runs/a", place,
+                                 toml_quote(text)));
   return text;
 }
 
