@@ -32,6 +32,12 @@ struct Arguments {
 
 std::string points_text(std::size_t count) { return fmt::format("{} point{}", count, count == 1 ? "" : "s"); }
 
+/// Two digits, or all before the point.
+std::string hours_text(double seconds) {
+  const double hours = seconds / 3600;
+  return hours < 100 ? fmt::format("{:.2g}", hours) : fmt::format("{:.0f}", hours);
+}
+
 /// "12 GB", for people.
 std::string bytes_text(double bytes) {
   for (const char* unit : {"bytes", "kB", "MB", "GB"}) {
@@ -55,8 +61,8 @@ void print_estimate(const std::vector<Config>& configs) {
     bytes += expected_bytes(config);
   }
   const std::size_t cores = usable_cores();
-  fmt::print("Expected: {:.3g} core-hours (+- {:.0f} %), the longest run {}, {} on disk; on the {} core{} here {}.\n",
-             seconds / 3600, 100 * pace_uncertainty(configs), duration_text(longest), bytes_text(bytes), cores,
+  fmt::print("Expected: {} core-hours (+- {:.0f} %), the longest run {}, {} on disk; on the {} core{} here {}.\n",
+             hours_text(seconds), 100 * pace_uncertainty(configs), duration_text(longest), bytes_text(bytes), cores,
              cores == 1 ? "" : "s", duration_text(std::max(longest, seconds / static_cast<double>(cores))));
 }
 
@@ -206,7 +212,7 @@ void print_status(const std::vector<Line>& lines) {
       counts += fmt::format(", {} {}", totals.count[state], name_of(static_cast<PointState>(state)));
   fmt::print("{}{}: {:.0f} % of the work", points_text(lines.size()), counts, 100 * totals.fraction);
   fmt::print("{}\n",
-             totals.seconds_left > 0 ? fmt::format(", about {:.2g} core-hours left", totals.seconds_left / 3600) : "");
+             totals.seconds_left > 0 ? fmt::format(", about {} core-hours left", hours_text(totals.seconds_left)) : "");
 }
 
 int status(const Arguments& arguments) {

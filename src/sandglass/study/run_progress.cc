@@ -35,7 +35,8 @@ void ProgressFile::show(std::string_view stage, double fraction) {
   const auto bracket = stage.find(" (");
   const std::string name(stage.substr(0, bracket));
   const auto now = Clock::now();
-  if (name != progress_.stage) {
+  const bool new_stage = name != progress_.stage;
+  if (new_stage) {
     progress_.stage = name;
     first_fraction_ = fraction;
     stage_began_ = now;
@@ -51,7 +52,7 @@ void ProgressFile::show(std::string_view stage, double fraction) {
   const double stage_length = name == "equilibrating" ? equilibrate_ : name == "measuring" ? collisions_ : 0;
   const double per_second = (fraction - first_fraction_) * stage_length / elapsed;
   if (elapsed > 1 && per_second > 0) progress_.seconds_left = (equilibrate_ + collisions_ - done) / per_second;
-  if (std::chrono::duration<double>(now - last_written_).count() < interval_) return;
+  if (!new_stage && std::chrono::duration<double>(now - last_written_).count() < interval_) return;
   last_written_ = now;
   write();
 }

@@ -20,8 +20,8 @@ struct RunProgress {
   std::string host;                    ///< where it runs or ran
 };
 
-/// Writes the file of one run now and then while it works: at most every `interval` seconds, by a rename, without
-/// waiting for the disk. A file that cannot be written is no reason to stop a run.
+/// Writes the file of one run now and then while it works: when a stage begins and every `interval` seconds, by a
+/// rename, without waiting for the disk. A file that cannot be written is no reason to stop a run.
 class ProgressFile {
  public:
   ProgressFile(std::filesystem::path folder, const Config& config, double interval = 10);
