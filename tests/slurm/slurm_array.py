@@ -223,7 +223,7 @@ def test(cluster, folder):
     wait_until(lambda: measuring(campaign), "the points go on", 60)
     # What --signal=B:USR1@300 does five minutes before the end.
     cluster.command("scancel", "--signal=USR1", "--batch", str(array))
-    wait_until(lambda: set(states(campaign)) == {"done"}, "all points are done", 150)
+    wait_until(lambda: set(states(campaign)) == {"done"}, "all points are done", 300)
 
     jobs = [cluster.ended_job(f"{array}_{task}") for task in range(1, POINTS + 1)]
     restarts = sum(int(re.search(r"Restarts=(\d+)", job)[1]) for job in jobs)
