@@ -22,6 +22,7 @@ constexpr Command commands[] = {
     {"run", sandglass::run_command, "simulate and measure one state point"},
     {"prepare", sandglass::prepare_command, "make only the initial state"},
     {"analyze", sandglass::analyze_command, "the same measurements on stored frames"},
+    {"sweep", sandglass::sweep_command, "campaigns: many state points, here or on a cluster"},
     {"bench", sandglass::bench_command, "measure the speed of the engine, and check it"},
     {"info", sandglass::info_command, "version, machine, and all configuration keys"},
 };

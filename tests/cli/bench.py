@@ -101,5 +101,23 @@ class Table(program.Case):
         self.assertEqual([line["drive"] for line in lines], ["none", "none", "none", "pair"])
 
 
+class Throughput(program.Case):
+    def test_shares_of_the_speed_alone(self):
+        steady = self.folder / "steady"
+        steady.write_text("#!/bin/sh\necho '{\"collisions_per_second\": 2e6}'\n")
+        steady.chmod(0o755)
+        done = script("throughput", steady, "--jobs", 3, "--rounds", 2, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("each reaches 1.000 of its speed alone (median; 1.000 to 1.000), a loss of 0.0 %", done.stdout)
+        self.assertEqual(script("throughput", steady, "--most-loss", "-0.01", cwd=self.folder).returncode, 1)
+        self.assertNotEqual(script("throughput", "/bin/false", cwd=self.folder).returncode, 0)
+
+    def test_with_the_program(self):
+        done = script("throughput", program.SANDGLASS, "--jobs", 2, "--rounds", 1, "--particles", 200,
+                      "--packing-fraction", 0.3, "--collisions", 50, "--pin", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("2 runs at a time, pinned", done.stdout)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -6,6 +6,7 @@ namespace sandglass {
 int run_command(int argc, char** argv);
 int prepare_command(int argc, char** argv);
 int analyze_command(int argc, char** argv);
+int sweep_command(int argc, char** argv);
 int bench_command(int argc, char** argv);
 int info_command(int argc, char** argv);
 

@@ -2,7 +2,10 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cmath>
+#include <exception>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,9 +14,12 @@
 #include "sandglass/cmd/progress_bar.h"
 #include "sandglass/core/errors.h"
 #include "sandglass/io/config.h"
+#include "sandglass/io/config_table.h"
 #include "sandglass/io/run_folder.h"
 #include "sandglass/report/report.h"
+#include "sandglass/study/manifest.h"
 #include "sandglass/study/run_point.h"
+#include "sandglass/study/run_progress.h"
 
 namespace sandglass {
 namespace {
@@ -22,6 +28,8 @@ struct Arguments {
   std::string config, folder;
   std::vector<std::string> assignments;
   bool resume = false, force = false, paranoid = false;
+  std::string manifest;
+  std::uint64_t index = 0, count = 1;  // of the points of the manifest
 };
 
 // "0.8123(45)" style is for papers; here value and error stand side by side.
@@ -62,19 +70,29 @@ Arguments parse(int argc, char** argv, int& exit_code) {
   Arguments arguments;
   std::string threads, max_walltime;
   CLI::App app{"Simulates and measures one state point.", "sandglass run"};
-  app.add_option("config", arguments.config, "configuration (TOML); all keys: sandglass info --keys")->required();
-  app.add_option("-o,--output", arguments.folder, "folder for the results (default: runs/NAME of the configuration)");
+  auto* config = app.add_option("config", arguments.config, "configuration (TOML); all keys: sandglass info --keys");
+  auto* folder = app.add_option("-o,--output", arguments.folder,
+                                "folder for the results (default: runs/NAME of the configuration)");
   app.add_option("--set", arguments.assignments, "set a key, as in --set run.seed=7; after the file, repeatable")
       ->expected(1)
       ->take_all();
   app.add_option("--threads", threads, "short for --set run.threads=N");
   app.add_option("--max-walltime", max_walltime, "seconds; short for --set run.max_walltime_seconds=T");
   app.add_flag("--paranoid", arguments.paranoid, "short for --set run.self_check=every_event (slow)");
-  app.add_flag("--resume", arguments.resume, "go on from the checkpoint in the folder; start if there is none");
-  app.add_flag("--force", arguments.force, "replace the run that the folder holds")->excludes("--resume");
+  auto* resume =
+      app.add_flag("--resume", arguments.resume, "go on from the checkpoint in the folder; start if there is none");
+  auto* force = app.add_flag("--force", arguments.force, "replace the run that the folder holds")->excludes("--resume");
+  auto* manifest =
+      app.add_option("--manifest", arguments.manifest, "instead of a configuration: points of a campaign (sweep init)");
+  auto* index = app.add_option("--index", arguments.index, "the point to run or go on with, from 1")->needs(manifest);
+  app.add_option("--count", arguments.count, "that many points from there, one after another")
+      ->needs(manifest)
+      ->check(CLI::PositiveNumber);
+  manifest->excludes(config)->excludes(folder)->excludes(resume)->excludes(force)->needs(index);
   exit_code = -1;
   try {
     app.parse(argc, argv);
+    if (config->empty() && manifest->empty()) throw CLI::RequiredError("a configuration, or --manifest with --index:");
   } catch (const CLI::ParseError& error) {
     exit_code = app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
   }
@@ -86,34 +104,100 @@ Arguments parse(int argc, char** argv, int& exit_code) {
   return arguments;
 }
 
+/// Carries one run to its report and says so. `file`, if there is one, is told of the progress.
+ExitCode carry_out(const Config& config, RunFolder& folder, bool resume, ProgressFile* file = nullptr) {
+  RunResult result;
+  {
+    ProgressBar bar;
+    const auto show = [&](std::string_view stage, double fraction) {
+      bar.show(stage, fraction);
+      if (file != nullptr) file->show(stage, fraction);
+    };
+    result = run_point(config, folder, resume, {.progress = show, .stop_requested = stop_signal_came});
+  }
+  if (result.outcome == RunOutcome::stopped) {
+    if (file != nullptr) file->stopped();
+    return ExitCode::resumable;
+  }
+  if (result.outcome == RunOutcome::already_finished) fmt::print("This run is finished already; nothing was done.\n");
+  if (result.outcome == RunOutcome::finished || !std::filesystem::exists(folder.report())) write_report(folder.path());
+  print_summary(result.summary, folder);
+  return ExitCode::done;
+}
+
+/// One point of a campaign, whatever was done of it before. `spent` is how much of the wall time others before it took.
+ExitCode run_row(const Manifest& manifest, const ManifestRow& row, const Arguments& arguments, double spent) {
+  const std::filesystem::path path = manifest.run_folder(row);
+  if (!std::filesystem::is_directory(path))
+    throw InputError(fmt::format("point {} of the manifest has no folder {}: make it by sandglass sweep init",
+                                 row.index, path.string()));
+  RunFolder folder = RunFolder::open(path, FolderMode::resume);
+  const bool was_finished = std::filesystem::exists(folder.summary());
+  std::optional<ProgressFile> file;
+  try {
+    Config config = read_point(manifest, row);
+    for (const std::string& assignment : arguments.assignments) set_key(assignment, config);
+    if (double& limit = config.run.max_walltime_seconds; limit > 0 && !was_finished) {
+      limit -= spent;
+      if (limit <= 0) return ExitCode::resumable;
+    }
+    file.emplace(path, config);
+    const ExitCode code = carry_out(config, folder, true, was_finished ? nullptr : &*file);
+    if (code == ExitCode::done) file->finished();
+    if (code == ExitCode::resumable)
+      fmt::print("Stopped. Go on with: sandglass run --manifest {} --index {}\n", arguments.manifest, row.index);
+    return code;
+  } catch (const std::exception& error) {
+    if (!file) file.emplace(path, Config{});
+    file->failed(error.what());
+    throw;
+  }
+}
+
+/// `count` points of the manifest from `index` on, or as many as there are. One that fails does not stop the others;
+/// one that was stopped does: the time is over.
+int run_rows(const Arguments& arguments) {
+  const Manifest manifest = read_manifest(arguments.manifest);
+  find_row(manifest, arguments.index);
+  const auto began = std::chrono::steady_clock::now();
+  int worst = static_cast<int>(ExitCode::done);
+  const auto failed = [&](const ManifestRow& row, const std::exception& error, ExitCode code) {
+    fmt::print(stderr, "sandglass: point {}: {}\n", row.index, error.what());
+    worst = std::max(worst, static_cast<int>(code));
+  };
+  for (const ManifestRow& row : manifest.rows) {
+    if (row.index < arguments.index || row.index - arguments.index >= arguments.count) continue;
+    try {
+      const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+      if (run_row(manifest, row, arguments, spent) == ExitCode::resumable) return static_cast<int>(ExitCode::resumable);
+    } catch (const InputError& error) {
+      failed(row, error, ExitCode::bad_input);
+    } catch (const std::exception& error) {
+      failed(row, error, ExitCode::failure);
+    }
+  }
+  return worst;
+}
+
 }  // namespace
 
 int run_command(int argc, char** argv) {
   int exit_code = 0;
   const Arguments arguments = parse(argc, argv, exit_code);
   if (exit_code >= 0) return exit_code;
+  catch_stop_signals();
+  if (!arguments.manifest.empty()) return run_rows(arguments);
 
   const Config config = read_config(arguments.config, arguments.assignments);
   RunFolder folder = RunFolder::open(arguments.folder, arguments.resume  ? FolderMode::resume
                                                        : arguments.force ? FolderMode::force
                                                                          : FolderMode::fresh);
-  catch_stop_signals();
-  RunResult result;
-  {
-    ProgressBar bar;
-    result = run_point(config, folder, arguments.resume,
-                       {.progress = [&](std::string_view stage, double fraction) { bar.show(stage, fraction); },
-                        .stop_requested = stop_signal_came});
-  }
-  if (result.outcome == RunOutcome::stopped) {
+  const ExitCode code = carry_out(config, folder, arguments.resume);
+  if (code == ExitCode::resumable) {
     const std::string config_file = folder.holds_run() ? folder.config().string() : arguments.config;
     fmt::print("Stopped. Go on with: sandglass run {} -o {} --resume\n", config_file, arguments.folder);
-    return static_cast<int>(ExitCode::resumable);
   }
-  if (result.outcome == RunOutcome::already_finished) fmt::print("This run is finished already; nothing was done.\n");
-  if (result.outcome == RunOutcome::finished || !std::filesystem::exists(folder.report())) write_report(folder.path());
-  print_summary(result.summary, folder);
-  return static_cast<int>(ExitCode::done);
+  return static_cast<int>(code);
 }
 
 }  // namespace sandglass

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <vector>
 
 #include "sandglass/core/errors.h"
 
@@ -98,10 +100,13 @@ std::string read_whole(const std::filesystem::path& path, std::size_t limit) {
   if (!file) {
     throw InputError(fmt::format("cannot read {}: {}; check the path", path.string(), std::strerror(errno)));
   }
-  std::string text(limit + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  std::string text;
+  std::vector<char> piece(std::min<std::size_t>(limit + 1, 1 << 16));
+  while (file && text.size() <= limit) {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    text.append(piece.data(), static_cast<std::size_t>(file.gcount()));
+  }
   if (file.bad()) throw InputError(fmt::format("cannot read {}: {}", path.string(), std::strerror(errno)));
-  text.resize(static_cast<std::size_t>(file.gcount()));
   if (text.size() > limit) {
     throw InputError(fmt::format("{} is longer than {} bytes: this is not the file meant", path.string(), limit));
   }

@@ -13,10 +13,6 @@
 namespace sandglass {
 namespace {
 
-constexpr std::size_t file_limit = 1 << 20;  // no configuration is a megabyte long
-// A key a.a.a... makes as many tables, one in the other, as it has dots, and the library frees them by recursion.
-constexpr std::ptrdiff_t most_dots = 4096;
-
 /// Levenshtein's edit distance.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -46,6 +42,58 @@ std::string suggestion(std::string_view unknown) {
   return "see docs/configuration.md for all keys";
 }
 
+void check_section(const std::string& section, const std::string& place) {
+  if (section == "sweep")
+    throw InputError(
+        fmt::format("{}: [sweep] makes this a study of many runs: make their folders by sandglass sweep init", place));
+  std::string_view best;
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (const Key& key : config_table()) {
+    const std::size_t distance = edit_distance(section, key.section());
+    if (distance == 0) return;
+    if (distance < least) least = distance, best = key.section();
+  }
+  throw InputError(fmt::format("{}: unknown section [{}]: did you mean [{}]?", place, section, best));
+}
+
+std::string trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == text.npos) return "";
+  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
+}
+
+/// Strings come from the command line too; a file that holds anything but UTF-8 could not be read again.
+void check_text(const Config& config) {
+  try {
+    (void)toml::parse("value = " + toml_quote(config.prepare.file));
+  } catch (const toml::parse_error&) {
+    throw InputError("prepare.file is not valid UTF-8: rename the file");
+  }
+}
+
+}  // namespace
+
+std::string read_config_file(const std::filesystem::path& file) {
+  constexpr std::size_t longest = 1 << 20;  // no configuration is a megabyte long
+  return read_whole(file, longest);
+}
+
+toml::table parse_toml(std::string_view text, const std::string& name) {
+  // A key a.a.a... makes as many tables, one in the other, as it has dots, and the library frees them by recursion.
+  constexpr std::size_t most_dots = 4096;
+  std::size_t dots = 0;
+  for (const char c : text) {
+    dots = c == '\n' ? 0 : dots + (c == '.');
+    if (dots > most_dots)
+      throw InputError(fmt::format("{}: more than {} dots in one line: this is not the file meant", name, most_dots));
+  }
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}: this is not TOML: {}", locate(name, error.source().begin), error.description()));
+  }
+}
+
 const Key& find_key(const std::string& name, const std::string& place) {
   const auto found =
       std::find_if(config_table().begin(), config_table().end(), [&](const Key& key) { return key.name == name; });
@@ -57,18 +105,7 @@ std::string locate(const std::string& name, const toml::source_position& at) {
   return fmt::format("{}:{}:{}", name, at.line, at.column);
 }
 
-void check_section(const std::string& section, const std::string& place) {
-  std::string_view best;
-  std::size_t least = std::numeric_limits<std::size_t>::max();
-  for (const Key& key : config_table()) {
-    const std::size_t distance = edit_distance(section, key.section());
-    if (distance == 0) return;
-    if (distance < least) least = distance, best = key.section();
-  }
-  throw InputError(fmt::format("{}: unknown section [{}]: did you mean [{}]?", place, section, best));
-}
-
-void apply(const toml::table& file, const std::string& name, const std::filesystem::path& folder, Config& config) {
+void set_keys(const toml::table& file, const std::string& name, const std::filesystem::path& folder, Config& config) {
   for (const auto& [section, content] : file) {
     const std::string section_name{section.str()};
     const std::string place = locate(name, section.source().begin);
@@ -84,14 +121,7 @@ void apply(const toml::table& file, const std::string& name, const std::filesyst
   }
 }
 
-std::string trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == text.npos) return "";
-  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
-}
-
-/// "key=value": a TOML value, or a string where it is none.
-void assign(const std::string& assignment, Config& config) {
+void set_key(const std::string& assignment, Config& config) {
   const std::string place = "--set " + assignment;
   const auto equals = assignment.find('=');
   if (equals == std::string::npos) {
@@ -106,38 +136,21 @@ void assign(const std::string& assignment, Config& config) {
   }
   if (parsed.size() != 1) parsed = toml::table{{"value", raw}};
   key.read(config, key, {*parsed.get("value"), place, raw, std::filesystem::current_path()});
+  check_text(config);
 }
-
-/// Strings come from the command line too; a file that holds anything but UTF-8 could not be read again.
-void check_text(const Config& config) {
-  try {
-    (void)toml::parse("value = " + toml_quote(config.prepare.file));
-  } catch (const toml::parse_error&) {
-    throw InputError("prepare.file is not valid UTF-8: rename the file");
-  }
-}
-
-}  // namespace
 
 Config read_config_text(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                         const std::vector<std::string>& assignments) {
   Config config;
-  if (std::count(text.begin(), text.end(), '.') > most_dots)
-    throw InputError(fmt::format("{}: more than {} dots: this is not the file meant", name, most_dots));
-  try {
-    apply(toml::parse(text), name, folder, config);
-  } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}: this is not TOML: {}", locate(name, error.source().begin), error.description()));
-  }
-  for (const std::string& assignment : assignments) assign(assignment, config);
-  check_text(config);
+  set_keys(parse_toml(text, name), name, folder, config);
+  for (const std::string& assignment : assignments) set_key(assignment, config);
   check_config(config);
   return config;
 }
 
 Config read_config(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
   if (file.empty()) return read_config_text("", "", "", assignments);
-  return read_config_text(read_whole(file, file_limit), file.string(), std::filesystem::absolute(file).parent_path(),
+  return read_config_text(read_config_file(file), file.string(), std::filesystem::absolute(file).parent_path(),
                           assignments);
 }
 

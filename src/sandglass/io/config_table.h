@@ -47,6 +47,24 @@ struct Key {
 /// All keys, section by section.
 const std::vector<Key>& config_table();
 
+/// The text of a configuration, which is no longer than a megabyte. Throws InputError.
+std::string read_config_file(const std::filesystem::path& file);
+
+/// Parses TOML; `name` stands for the file in the InputError that it throws.
+toml::table parse_toml(std::string_view text, const std::string& name);
+
+/// The row of a key. Throws InputError that begins with `place` and suggests the nearest known one.
+const Key& find_key(const std::string& name, const std::string& place);
+
+/// "file:line:column".
+std::string locate(const std::string& file, const toml::source_position& at);
+
+/// Sets the keys of a parsed file, section by section. `name` and `folder` as in read_config_text. Throws InputError.
+void set_keys(const toml::table& file, const std::string& name, const std::filesystem::path& folder, Config& config);
+
+/// Sets one key by "key=value" of the command line: a TOML value, or a string where it is none. Throws InputError.
+void set_key(const std::string& assignment, Config& config);
+
 /// A TOML basic string: quotes, backslashes and control characters escaped.
 std::string toml_quote(std::string_view text);
 
