@@ -8,7 +8,6 @@
 #include "sandglass/cmd/commands.h"
 #include "sandglass/cmd/progress_bar.h"
 #include "sandglass/core/errors.h"
-#include "sandglass/report/report.h"
 #include "sandglass/study/analyse.h"
 
 namespace sandglass {
@@ -69,7 +68,6 @@ int analyze_command(int argc, char** argv) {
     ProgressBar bar;
     analyse(trajectory, folder, options, [&](std::string_view stage, double done) { bar.show(stage, done); });
   }
-  write_report(folder);
   fmt::print("Results: {}\n", (folder / "summary.json").string());
   return static_cast<int>(ExitCode::done);
 }

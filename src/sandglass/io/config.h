@@ -51,10 +51,10 @@ struct Config {
   struct Observe {
     std::vector<double> wavenumbers{0.5, 3.0};  ///< in 1 / R_s
     double lags_per_decade = 12;
-    double overlap_length = 0.6;          ///< in R_s
-    double selection_time = 0;            ///< 0: the length of an interval
-    std::uint64_t structure_frames = 20;  ///< 0: no static structure
-    double bin_width = 0;                 ///< of g(r), in R_s; 0: L / 800, at most 0.4
+    double overlap_length = 0.6;             ///< in R_s
+    double selection_time = 0;               ///< 0: the length of an interval
+    std::optional<double> structure_frames;  ///< none: "auto", as many as cost little
+    double bin_width = 0;                    ///< of g(r), in R_s; 0: L / 800, at most 0.4
   } observe;
   struct Output {
     std::uint64_t trajectory_frames = 11;

@@ -147,6 +147,9 @@ void check_config(const Config& config) {
         "L / 800",
         config.observe.bin_width));
   }
+  if (const double frames = config.observe.structure_frames.value_or(0); frames != std::floor(frames)) {
+    throw InputError(fmt::format("observe.structure_frames = {} must be a whole number or \"auto\"", frames));
+  }
   if (config.output.trajectory_frames == 1) {
     throw InputError(
         "output.trajectory_frames = 1: both ends of the measured stretch are stored, so set it to 0 (no file) or at "

@@ -298,10 +298,10 @@ const std::vector<Key>& config_table() {
            .range = {0, 1e12}}),
       key<&C::observe, &C::Observe::structure_frames>(
           {.name = "observe.structure_frames",
-           .description =
-               "Most frames of which g(r), S(k), bond order and velocity structure are taken, evenly spaced; "
-               "a short run takes fewer. 0: none.",
-           .range = {0, 1e6}}),
+           .description = "Frames, evenly spaced, of which g(r), S(k), bond order and velocity structure are taken; "
+                          "`auto`: 5 to 20, one per 1000 collisions of a disk; 0: none.",
+           .range = {0, 1e6},
+           .words = {"auto"}}),
       key<&C::observe, &C::Observe::bin_width>(
           {.name = "observe.bin_width",
            .unit = "R_s",

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <type_traits>
 
 #include "sandglass/core/errors.h"
@@ -29,7 +32,6 @@ void visit_diffusion(const std::string& at, Diffusion& diffusion, Visit&& visit)
   visit(at + "/at_collisions", diffusion.at_collisions);
   visit(at + "/from_vacf", diffusion.from_vacf);
   visit(at + "/vacf_error", diffusion.vacf_error);
-  visit(at + "/vacf_to_collisions", diffusion.vacf_to_collisions);
 }
 
 /// The one list of members with their places in the file; writing and reading walk it.
@@ -140,11 +142,23 @@ void unpack(const Json& json, T& value) {
   }
 }
 
+/// What stored frames cannot tell.
+bool needs_run(std::string_view place) {
+  constexpr std::array<std::string_view, 13> places{
+      "/seed",        "/restitution", "/collisions", "/compressibility_factor", "/kick", "/calibration", "/energy",
+      "/elastic_col", "/momentum",    "/stationary", "/temperature_drift",      "/wall", "/state_hash"};
+  if (place == "/collisions_per_particle") return false;
+  if (place.starts_with("/collisions_per_second") || place.starts_with("/collision_rate_by_pair")) return true;
+  return std::any_of(places.begin(), places.end(), [&](std::string_view start) { return place.starts_with(start); });
+}
+
 }  // namespace
 
 std::string to_json(const Summary& summary) {
   Json json;
-  visit_members(summary, [&](const std::string& at, const auto& value) { json[Json::json_pointer(at)] = pack(value); });
+  visit_members(summary, [&](const std::string& at, const auto& value) {
+    if (!summary.from_frames || !needs_run(at)) json[Json::json_pointer(at)] = pack(value);
+  });
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -38,8 +38,7 @@ struct Summary {
   struct Diffusion {  ///< (1/4) d MSD / ds, per collision of a disk
     double from_msd = unknown, error = unknown;
     double at_collisions = unknown;                    ///< s at which the slope is taken
-    double from_vacf = unknown, vacf_error = unknown;  ///< the same from the integral of the VACF
-    double vacf_to_collisions = unknown;               ///< and where that ends
+    double from_vacf = unknown, vacf_error = unknown;  ///< the same from the integral of the VACF up to there
   };
   struct DiffusionByGroup {
     Diffusion small, big, all;
@@ -61,6 +60,7 @@ struct Summary {
     double all = unknown, small = unknown;
   };
 
+  bool from_frames = false;  ///< made from stored frames: what only a run knows is left out of the file
   std::string version;
   std::uint64_t seed = 0, particles = 0;
   double packing_fraction = unknown, restitution = unknown, box_length = unknown;

@@ -138,29 +138,15 @@ double integral(const std::vector<double>& t, Value&& f, std::size_t last) {
 
 }  // namespace
 
-GreenKubo diffusion_from_velocities(const IntervalSeries& velocities, double longest) {
-  constexpr int lost_in_a_row = 3;
-  GreenKubo result;
-  if (velocities.intervals == 0) return result;
+Estimate diffusion_from_velocities(const IntervalSeries& velocities, double t) {
   std::size_t last = 0;
-  int lost = 0;
-  for (std::size_t lag = 1; lag < velocities.time.size() && velocities.time[lag] <= longest * (1 + 1e-9); ++lag) {
-    const Estimate correlation = velocities.estimate(lag);
-    lost = std::fabs(correlation.value) <= 2 * correlation.error ? lost + 1 : 0;
-    if (lost == lost_in_a_row) {
-      last = lag - lost_in_a_row;
-      break;
-    }
-    last = lag;
-  }
-  if (last < 2) return result;
-  result.end = velocities.time[last];
-  result.diffusion = jackknife(velocities.intervals, [&](std::size_t left_out) {
+  while (last + 1 < velocities.time.size() && velocities.time[last + 1] <= t * (1 + 1e-9)) ++last;
+  if (velocities.intervals == 0 || last < 2) return {};
+  return jackknife(velocities.intervals, [&](std::size_t left_out) {
     return integral(
                velocities.time, [&](std::size_t lag) { return velocities.mean(lag, left_out); }, last) /
            2;
   });
-  return result;
 }
 
 }  // namespace sandglass

@@ -30,13 +30,9 @@ Estimate diffusion_coefficient(const IntervalSeries& series, double t, double sp
 /// first lag linearly in t); jackknife error. NaN when it never does.
 Estimate decay_time(const IntervalSeries& series, double level);
 
-/// D = (1/2) int_0^end <v(0).v(t)> dt (Green and Kubo), by piecewise cubics through the lags. Beyond the time
-/// at which correlations are lost in their noise the integral would only gather that: it ends before the first three
-/// lags in a row whose values are all within two of their errors of zero, at the latest at `longest`.
-struct GreenKubo {
-  Estimate diffusion;
-  double end = std::numeric_limits<double>::quiet_NaN();
-};
-GreenKubo diffusion_from_velocities(const IntervalSeries& velocities, double longest);
+/// D = (1/2) int_0^t <v(0).v(t')> dt' (Green and Kubo) up to the last lag within `t`, by piecewise cubics through the
+/// lags; jackknife error. The same as (1/4) d MSD / dt there, of which it is independent only in its noise: that of the
+/// correlations at long lags, which the error tells. NaN with fewer than two lags.
+Estimate diffusion_from_velocities(const IntervalSeries& velocities, double t);
 
 }  // namespace sandglass

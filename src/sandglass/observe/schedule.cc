@@ -59,10 +59,10 @@ MeasurementPlan plan_measurement(double start, double interval_length, std::uint
   return plan;
 }
 
-std::uint64_t affordable_structure_frames(std::uint64_t wanted, const MeasurementPlan& plan, double mean_free_time) {
+std::uint64_t affordable_structure_frames(const MeasurementPlan& plan, double mean_free_time) {
   constexpr double free_times_per_frame = 1000;
   const double affordable = (plan.end() - plan.start) / (mean_free_time * free_times_per_frame);
-  return std::min(wanted, static_cast<std::uint64_t>(std::max(2.0, affordable)));
+  return static_cast<std::uint64_t>(std::clamp(affordable, 5.0, 20.0));
 }
 
 namespace {

@@ -44,9 +44,9 @@ bool compatible(const MeasurementPlan& a, const MeasurementPlan& b);
 MeasurementPlan plan_measurement(double start, double interval_length, std::uint64_t intervals, double mean_free_time,
                                  double lags_per_decade, std::vector<double> wavenumbers);
 
-/// At most `wanted` frames for the static structure, and no more than one per 1000 mean free times, but two if wanted:
-/// a frame of 10^4 disks takes as long as 20 collisions of each, whatever the number of disks.
-std::uint64_t affordable_structure_frames(std::uint64_t wanted, const MeasurementPlan& plan, double mean_free_time);
+/// Frames of the static structure that cost about a fiftieth of the run: one per 1000 mean free times, but 5 to 20. (A
+/// frame takes as long as some 20 collisions of every disk.)
+std::uint64_t affordable_structure_frames(const MeasurementPlan& plan, double mean_free_time);
 
 /// What is due at one moment of an interval. Evaluations at an offset come before new origins there; some new origins
 /// are compared with themselves at once (lag 0).

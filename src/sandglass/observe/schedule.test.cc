@@ -4,6 +4,7 @@
 #include <rapidcheck.h>
 
 #include <cmath>
+#include <utility>
 
 #include "sandglass/core/errors.h"
 
@@ -100,4 +101,13 @@ TEST_CASE("lags by their time: the nearest, and one per decade") {
   REQUIRE(decades.size() == 4);
   for (std::size_t i = 0; i < 4; ++i)
     CHECK(schedule.lags[decades[i]] == doctest::Approx(0.05 * std::pow(10.0, static_cast<double>(i))).epsilon(1e-9));
+}
+
+TEST_CASE("the frames of the static structure: 5 to 20, one per 1000 mean free times") {
+  MeasurementPlan plan;
+  plan.intervals = 10;
+  for (const auto& [length, frames] : {std::pair{1.0, 5}, {1100.0, 11}, {1e9, 20}}) {
+    plan.interval_length = length;
+    CHECK(affordable_structure_frames(plan, 1) == static_cast<std::uint64_t>(frames));
+  }
 }

@@ -133,6 +133,7 @@ Summary analyse(const std::filesystem::path& trajectory, const std::filesystem::
         values->assign(values->size(), Summary::unknown);
 
   Summary summary;
+  summary.from_frames = true;
   summary.version = version;
   summary.particles = disks.size();
   summary.packing_fraction = packing_fraction(disks);
@@ -159,7 +160,7 @@ Summary analyse(const std::filesystem::path& trajectory, const std::filesystem::
   summary.decisions = reader.decisions();
   summary.decisions.push_back(fmt::format(
       "Measured on {} stored frames of {}, {:.6g} time units apart, in {} blocks of {} steps. What frames do not hold "
-      "(seed, collisions, kicks, energies) is unknown: 0 or null in summary.json.",
+      "(seed, pressure, kicks, energies) is left out.",
       timing.frames, trajectory.string(), timing.step, plan.intervals, plan.temperature_samples));
   if (reader.largest_step() > 0.25)
     summary.warnings.push_back(

@@ -315,7 +315,9 @@ void PointRun::begin_measuring() {
   plan.overlap_length = config_.observe.overlap_length;
   plan.selection_time = config_.observe.selection_time;
   plan.bin_width = config_.observe.bin_width;
-  plan.structure_frames = affordable_structure_frames(config_.observe.structure_frames, plan, 1 / rate);
+  plan.structure_frames = config_.observe.structure_frames
+                              ? static_cast<std::uint64_t>(*config_.observe.structure_frames)
+                              : affordable_structure_frames(plan, 1 / rate);
   measurement_->begin(plan, simulation_->tally());
   frames_->begin(plan);
   facts_.start_energy = kinetic_energy(simulation_->state());

@@ -33,13 +33,8 @@ Summary::Diffusion diffusion_of(const Correlator& correlator, Group group) {
   const IntervalSeries displacements = correlator.mean_square_displacement(group);
   const double time = std::fmin(paper_collisions / rate, displacements.time.back());
   const Estimate slope = diffusion_coefficient(displacements, time);
-  const GreenKubo integral = diffusion_from_velocities(correlator.velocity_autocorrelation(group), time);
-  return {slope.value / rate,
-          slope.error / rate,
-          time * rate,
-          integral.diffusion.value / rate,
-          integral.diffusion.error / rate,
-          integral.end * rate};
+  const Estimate integral = diffusion_from_velocities(correlator.velocity_autocorrelation(group), time);
+  return {slope.value / rate, slope.error / rate, time * rate, integral.value / rate, integral.error / rate};
 }
 
 void describe_relaxation(const Correlator& correlator, Summary& summary) {
