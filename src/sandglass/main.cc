@@ -21,6 +21,7 @@ struct Command {
 constexpr Command commands[] = {
     {"run", sandglass::run_command, "simulate and measure one state point"},
     {"prepare", sandglass::prepare_command, "make only the initial state"},
+    {"figures", sandglass::figures_command, "the figures of a run or a study"},
     {"bench", sandglass::bench_command, "measure the speed of the engine, and check it"},
     {"info", sandglass::info_command, "version, machine, and all configuration keys"},
 };

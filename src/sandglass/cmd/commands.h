@@ -5,6 +5,7 @@ namespace sandglass {
 
 int run_command(int argc, char** argv);
 int prepare_command(int argc, char** argv);
+int figures_command(int argc, char** argv);
 int bench_command(int argc, char** argv);
 int info_command(int argc, char** argv);
 
