@@ -23,6 +23,7 @@ constexpr Command commands[] = {
     {"prepare", sandglass::prepare_command, "make only the initial state"},
     {"analyze", sandglass::analyze_command, "the same measurements on stored frames"},
     {"sweep", sandglass::sweep_command, "campaigns: many state points, here or on a cluster"},
+    {"figures", sandglass::figures_command, "the figures of a run or a study"},
     {"bench", sandglass::bench_command, "measure the speed of the engine, and check it"},
     {"info", sandglass::info_command, "version, machine, and all configuration keys"},
 };

@@ -7,6 +7,7 @@ int run_command(int argc, char** argv);
 int prepare_command(int argc, char** argv);
 int analyze_command(int argc, char** argv);
 int sweep_command(int argc, char** argv);
+int figures_command(int argc, char** argv);
 int bench_command(int argc, char** argv);
 int info_command(int argc, char** argv);
 

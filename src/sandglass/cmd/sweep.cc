@@ -14,9 +14,12 @@
 #include "sandglass/core/errors.h"
 #include "sandglass/io/config_table.h"
 #include "sandglass/io/run_folder.h"
+#include "sandglass/report/paper_figures.h"
+#include "sandglass/report/study_page.h"
 #include "sandglass/study/campaign.h"
 #include "sandglass/study/campaign_run.h"
 #include "sandglass/study/campaign_status.h"
+#include "sandglass/study/collect.h"
 #include "sandglass/study/cost.h"
 
 namespace sandglass {
@@ -235,6 +238,24 @@ int status(const Arguments& arguments) {
   return static_cast<int>(ExitCode::done);
 }
 
+int collect(const Arguments& arguments) {
+  Study study;
+  {
+    ProgressBar bar;
+    study =
+        collect_study(arguments.folder, [&](std::string_view stage, double fraction) { bar.show(stage, fraction); });
+  }
+  write_study_report(study, paper_figures(study), arguments.folder);
+  std::size_t runs = 0;
+  for (const StatePoint& point : study.points) runs += point.replicas.size();
+  fmt::print("{} runs of {} state points collected\n", runs, study.points.size());
+  for (const AbsentRun& run : study.absent) fmt::print("Note: no data of {}: {}\n", run.path, run.why);
+  const std::filesystem::path folder = arguments.folder;
+  fmt::print("Data: {}, {}\nReport: {}\n", (folder / "study.h5").string(), (folder / "csv").string(),
+             (folder / "report.html").string());
+  return static_cast<int>(ExitCode::done);
+}
+
 }  // namespace
 
 int sweep_command(int argc, char** argv) {
@@ -263,12 +284,17 @@ int sweep_command(int argc, char** argv) {
   folder(status_app);
   status_app->add_flag("--json", arguments.json, "print one JSON object instead of a table");
 
+  auto* collect_app =
+      app.add_subcommand("collect", "merge the replicas of all finished points: study.h5, CSV, and a report");
+  folder(collect_app);
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
   }
   if (init_app->parsed()) return init(arguments);
+  if (collect_app->parsed()) return collect(arguments);
   return run_app->parsed() ? run(arguments) : status(arguments);
 }
 

@@ -8,66 +8,18 @@
 #include <string_view>
 #include <utility>
 
+#include "sandglass/report/correlation.h"
 #include "sandglass/report/number.h"
+#include "sandglass/study/results.h"
 
 namespace sandglass {
 namespace {
-
-using Results = std::vector<Dataset>;
 
 struct Kind {
   const char* name;
   Role role;
 };
 constexpr std::array<Kind, 3> kinds{{{"small", Role::small}, {"big", Role::big}, {"all", Role::all}}};
-
-/// The values of one dataset as double; empty when there is none of that path.
-std::vector<double> numbers(const Results& results, const std::string& path) {
-  const auto found = std::find_if(results.begin(), results.end(), [&](const Dataset& d) { return d.path == path; });
-  if (found == results.end()) return {};
-  return std::visit([](const auto& values) { return std::vector<double>(values.begin(), values.end()); },
-                    found->values);
-}
-
-/// One measured function of the lag, or several rows of it (one for each wavenumber).
-struct Correlation {
-  std::vector<double> time, collisions, value, error;
-  [[nodiscard]] std::size_t lags() const { return time.size(); }
-};
-
-/// Reads the group /dynamics/`species`/`quantity`. What does not fit is said in `missing` and nothing is returned.
-std::optional<Correlation> correlation(const Results& results, std::string_view species, std::string_view quantity,
-                                       std::string& missing, std::size_t rows = 1) {
-  const std::string group = fmt::format("/dynamics/{}/{}", species, quantity);
-  auto read = [&](const char* name) { return numbers(results, group + "/" + name); };
-  Correlation c{read("time"), read("collisions"), read("value"), read("error")};
-  if (c.time.empty() || c.value.empty()) {
-    missing += fmt::format("The results hold no {} (or only a part of it). ", group);
-    return std::nullopt;
-  }
-  const std::size_t expected = c.lags() * rows;
-  if (c.value.size() != expected) {
-    missing += fmt::format("{} has {} values where {} were expected. ", group, c.value.size(), expected);
-    return std::nullopt;
-  }
-  if (c.error.size() != expected) c.error.clear();
-  if (c.collisions.size() != c.lags()) c.collisions.clear();
-  return c;
-}
-
-/// The points of row `row` whose value is a number, divided by `scale`.
-Curve curve_of(const Correlation& c, const Kind& kind, std::size_t row = 0, double scale = 1) {
-  Curve curve{.name = kind.name, .role = kind.role, .x = {}, .y = {}, .error = {}, .alternative_x = {}};
-  for (std::size_t lag = 0; lag < c.lags(); ++lag) {
-    const std::size_t i = row * c.lags() + lag;
-    if (!std::isfinite(c.value[i])) continue;
-    curve.x.push_back(c.time[lag]);
-    curve.y.push_back(c.value[i] / scale);
-    if (!c.error.empty()) curve.error.push_back(c.error[i] / std::abs(scale));
-    if (!c.collisions.empty()) curve.alternative_x.push_back(c.collisions[lag]);
-  }
-  return curve;
-}
 
 /// The curve x -> function(x) over the points of `like` with first <= x <= last.
 template <class Function>
@@ -88,11 +40,7 @@ Figure lag_figure(std::string id, std::string title, std::string caption, Axis y
           .caption = std::move(caption),
           .x = {"lag t", "Rₛ √(mₛ/T₀)", true},
           .alternative_x = {"collisions per disk s", "", true},
-          .y = std::move(y),
-          .curves = {},
-          .parameter = std::nullopt,
-          .y_range = std::nullopt,
-          .missing = {}};
+          .y = std::move(y)};
 }
 
 /// Slopes 2 (free flight) and 1 (diffusion) beside the ends of the curve, each over one and a half decades.
@@ -147,7 +95,7 @@ Figure displacement_figure(const Results& results, const Summary& summary) {
       "flattens, diffusion when the cage has opened. ";
   for (const Kind& kind : kinds) {
     const auto c = correlation(results, kind.name, "mean_square_displacement", figure.missing);
-    if (c) figure.curves.push_back(curve_of(*c, kind));
+    if (c) figure.curves.push_back(curve_of(*c, kind.name, kind.role));
   }
   if (figure.curves.empty()) return figure;
   const Curve measured = figure.curves.front();
@@ -167,12 +115,12 @@ void add_velocity_figures(const Results& results, std::vector<Figure>& figures) 
     const auto c = correlation(results, kind.name, "velocity_autocorrelation", figure.missing);
     if (!c) continue;
     const auto at_zero =
-        numbers(results, fmt::format("/dynamics/{}/velocity_autocorrelation/equal_time_value", kind.name));
+        numbers_of(results, fmt::format("/dynamics/{}/velocity_autocorrelation/equal_time_value", kind.name));
     if (at_zero.empty() || !(at_zero.front() > 0)) {
       figure.missing += fmt::format("The results hold no Φ(0) for {}. ", kind.name);
       continue;
     }
-    Curve curve = curve_of(*c, kind, 0, at_zero.front());
+    Curve curve = curve_of(*c, kind.name, kind.role, 0, at_zero.front());
     for (std::size_t i = 0; i < curve.y.size(); ++i) {
       const double error = curve.error.empty() || !std::isfinite(curve.error[i]) ? 0 : curve.error[i];
       if (curve.y[i] + 3 * error < 0) lowest = std::min(lowest, curve.y[i]);
@@ -195,7 +143,7 @@ void add_velocity_figures(const Results& results, std::vector<Figure>& figures) 
 void add_scattering_figures(const Results& results, std::vector<Figure>& figures) {
   const std::string title = "Incoherent scattering function";
   const Figure blank = lag_figure("scattering", title, "", {"S_inc(k, t)", "", false});
-  const auto wavenumbers = numbers(results, "/dynamics/all/self_intermediate_scattering/wavenumber");
+  const auto wavenumbers = numbers_of(results, "/dynamics/all/self_intermediate_scattering/wavenumber");
   if (wavenumbers.empty()) {
     figures.push_back(blank);
     figures.back().missing = "The results hold no /dynamics/all/self_intermediate_scattering with its wavenumbers.";
@@ -212,7 +160,7 @@ void add_scattering_figures(const Results& results, std::vector<Figure>& figures
     auto add = [&](const Kind& kind, const char* quantity, const char* suffix, Line line) {
       const auto c = correlation(results, kind.name, quantity, figure.missing, wavenumbers.size());
       if (!c) return;
-      figure.curves.push_back(curve_of(*c, kind, k));
+      figure.curves.push_back(curve_of(*c, kind.name, kind.role, k));
       figure.curves.back().name += suffix;
       figure.curves.back().line = line;
     };
@@ -224,16 +172,15 @@ void add_scattering_figures(const Results& results, std::vector<Figure>& figures
 
 /// What is recorded from t = 0 on: the temperatures, their ratio, and the collisions per disk.
 void add_history_figures(const Results& results, std::vector<Figure>& figures) {
-  const std::vector<double> time = numbers(results, "/timeseries/time");
-  const std::vector<double> collisions = numbers(results, "/timeseries/collisions");
+  const std::vector<double> time = numbers_of(results, "/timeseries/time");
+  const std::vector<double> collisions = numbers_of(results, "/timeseries/collisions");
   Figure blank = lag_figure("", "", "", {});
   blank.x.label = "time t since the start";
   auto history = [&](const std::string& path, const Kind& kind, Figure& figure) {
     Curve curve{.name = kind.name,
                 .role = kind.role,
                 .x = time,
-                .y = numbers(results, path),
-                .error = {},
+                .y = numbers_of(results, path),
                 .alternative_x = collisions.size() == time.size() ? collisions : std::vector<double>{}};
     if (curve.y.empty() || curve.y.size() != time.size())
       figure.missing += fmt::format("The results hold no {} that fits /timeseries/time. ", path);
@@ -253,14 +200,13 @@ void add_history_figures(const Results& results, std::vector<Figure>& figures) {
   ratio.id = "temperature_ratio", ratio.title = "Temperature of small over big disks";
   ratio.caption = "Equipartition, T_s = T_b, does not hold in a driven granular fluid.";
   ratio.y = {"T_s / T_b", "", false};
-  const auto small = numbers(results, "/timeseries/temperature_small");
-  const auto big = numbers(results, "/timeseries/temperature_big");
+  const auto small = numbers_of(results, "/timeseries/temperature_small");
+  const auto big = numbers_of(results, "/timeseries/temperature_big");
   if (!small.empty() && small.size() == big.size() && small.size() == time.size()) {
     Curve curve{.name = "T_s / T_b",
                 .role = Role::all,
                 .x = time,
                 .y = small,
-                .error = {},
                 .alternative_x = collisions.size() == time.size() ? collisions : std::vector<double>{}};
     for (std::size_t i = 0; i < small.size(); ++i) curve.y[i] /= big[i];
     Curve one = curve;

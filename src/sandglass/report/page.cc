@@ -4,56 +4,13 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "sandglass/report/figure_json.h"
 #include "sandglass/report/page_files.h"
 
 namespace sandglass {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::string_view name_of(Role role) {
-  switch (role) {
-    case Role::all:
-      return "all";
-    case Role::small:
-      return "small";
-    case Role::big:
-      return "big";
-    case Role::fit:
-      return "fit";
-    case Role::guide:
-      return "guide";
-  }
-  return "all";
-}
-
-constexpr std::string_view name_of(Line line) {
-  switch (line) {
-    case Line::solid:
-      return "solid";
-    case Line::dashed:
-      return "dashed";
-    case Line::dotted:
-      return "dotted";
-  }
-  return "solid";
-}
-
-Json json_of(const Axis& axis) { return {{"label", axis.label}, {"unit", axis.unit}, {"log", axis.log}}; }
-
-Json json_of(const Curve& curve) {
-  return {{"name", curve.name}, {"role", name_of(curve.role)}, {"line", name_of(curve.line)},         {"x", curve.x},
-          {"y", curve.y},       {"error", curve.error},        {"alternative_x", curve.alternative_x}};
-}
-
-Json json_of(const Figure& figure) {
-  Json json{{"id", figure.id},           {"title", figure.title},  {"caption", figure.caption},
-            {"missing", figure.missing}, {"x", json_of(figure.x)}, {"alternative_x", json_of(figure.alternative_x)},
-            {"y", json_of(figure.y)},    {"y_range", nullptr},     {"curves", Json::array()}};
-  if (figure.y_range) json["y_range"] = *figure.y_range;
-  for (const Curve& curve : figure.curves) json["curves"].push_back(json_of(curve));
-  return json;
-}
 
 /// Positions to 10^-3 R_s, finer than any screen shows and half as long.
 Json rounded(const std::vector<double>& values) {
@@ -92,7 +49,7 @@ Json json_of(const Page& page) {
             {"config", page.config},
             {"commands", page.commands},
             {"provenance", json_of(page.provenance)}};
-  for (const Figure& figure : page.figures) json["figures"].push_back(json_of(figure));
+  for (const Figure& figure : page.figures) json["figures"].push_back(figure_json(figure));
   if (page.packing) json["packing"] = json_of(*page.packing);
   return json;
 }
@@ -120,25 +77,27 @@ std::string safe_in_script(const std::string& json) {
   return safe;
 }
 
-std::string page_html(const Page& page) {
+std::string html_of(std::string_view frame, const Json& data, std::string_view script) {
   // Bytes that are no UTF-8 (a file name may hold any) are replaced, not refused.
-  const std::string data = json_of(page).dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
   const std::pair<std::string_view, std::string> parts[] = {
       {"{{library-style}}", std::string(page_files::library_style)},
       {"{{style}}", std::string(page_files::style)},
-      {"{{data}}", safe_in_script(data)},
+      {"{{data}}", safe_in_script(text)},
       {"{{library-licence}}", std::string(page_files::library_licence)},
       {"{{library}}", std::string(page_files::library)},
       {"{{plot}}", std::string(page_files::plot)},
-      {"{{script}}", std::string(page_files::script)}};
+      {"{{figure}}", std::string(page_files::figure)},
+      {"{{script}}", std::string(script)}};
   std::string html;
-  std::string_view rest = page_files::html;
-  for (const auto& [mark, text] : parts) {  // in the order of the template, so that no part is searched for marks
-    const std::size_t at = rest.find(mark);
-    html.append(rest.substr(0, at)).append(text);
-    rest.remove_prefix(at + mark.size());
+  for (const auto& [mark, part] : parts) {  // in the order of the frame, so that no part is searched for marks
+    const std::size_t at = frame.find(mark);
+    html.append(frame.substr(0, at)).append(part);
+    frame.remove_prefix(at + mark.size());
   }
-  return html.append(rest);
+  return html.append(frame);
 }
+
+std::string page_html(const Page& page) { return html_of(page_files::html, json_of(page), page_files::script); }
 
 }  // namespace sandglass

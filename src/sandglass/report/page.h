@@ -1,8 +1,10 @@
 // The page as data, and the HTML file made from it.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -33,6 +35,9 @@ struct Page {
 /// One HTML file that needs no other: style, plot library, script and data are in it. Every text of `page` reaches the
 /// reader as text, whatever characters it holds.
 std::string page_html(const Page& page);
+
+/// The same for any page: `frame` (HTML with marks) and `script`, which fills it from `data`.
+std::string html_of(std::string_view frame, const nlohmann::ordered_json& data, std::string_view script);
 
 /// JSON that may stand inside <script>: <, >, & and the two line separators of Unicode are written as \uXXXX, which
 /// inside JSON strings is the same text and can neither end the script nor open a comment.

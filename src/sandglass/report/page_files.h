@@ -1,10 +1,11 @@
-// The files of the page, put into the program when it is built (embed.cmake).
+// The files of the pages, and what draws figures with matplotlib, put into the program when it is built (embed.cmake).
 #pragma once
 
 #include <string_view>
 
 namespace sandglass::page_files {
 
-extern const std::string_view html, style, script, plot, library, library_style, library_licence;
+extern const std::string_view html, style, script, plot, figure, study_html, study_script, library, library_style,
+    library_licence, python_drawing;
 
 }  // namespace sandglass::page_files

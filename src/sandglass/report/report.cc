@@ -6,8 +6,8 @@
 #include "sandglass/io/atomic_file.h"
 #include "sandglass/io/checkpoint.h"
 #include "sandglass/io/summary.h"
-#include "sandglass/report/results.h"
 #include "sandglass/report/run_page.h"
+#include "sandglass/study/results.h"
 
 namespace sandglass {
 namespace {

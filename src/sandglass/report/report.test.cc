@@ -10,8 +10,8 @@
 #include "sandglass/io/config.h"
 #include "sandglass/io/observables.h"
 #include "sandglass/io/temporary_folder.h"
-#include "sandglass/report/results.h"
 #include "sandglass/report/synthetic_run.test.h"
+#include "sandglass/study/results.h"
 
 namespace sandglass {
 

@@ -31,11 +31,12 @@ std::array<std::size_t, species_count> disk_counts(const Population& population)
 void check_plan(const MeasurementPlan& plan, const Config& config) {
   constexpr double widest = 1e15;  // longest by shortest lag; 10^12 collisions per disk span less
   const Config::Observe& observe = config.observe;
+  const auto most_frames = static_cast<std::uint64_t>(observe.structure_frames.value_or(20));
   const bool configured = plan.intervals == config.run.intervals && plan.wavenumbers == observe.wavenumbers &&
                           plan.lags_per_decade == observe.lags_per_decade &&
                           plan.overlap_length == observe.overlap_length &&
                           plan.selection_time == observe.selection_time && plan.bin_width == observe.bin_width &&
-                          plan.structure_frames <= observe.structure_frames;
+                          plan.structure_frames <= most_frames;
   if (!configured || !std::isfinite(plan.start) || plan.start < 0 || !std::isfinite(plan.end()) ||
       !(plan.interval_length <= widest * plan.shortest_lag) || plan.temperature_samples > 10000)
     throw InputError("the checkpoint is damaged: what it measures is not what is configured");

@@ -8,7 +8,27 @@ const palettes = {
   dark: { all: "#e6e9ec", small: "#56B4E9", big: "#E69F00", fit: "#009E73", guide: "#8b949d",
           ink: "#c9d0d6", grid: "#2c3237", ground: "#1b1f23" },
 };
-const dashes = { solid: [], dashed: [7, 5], dotted: [2, 4] };
+const dashes = { solid: [], dashed: [7, 5], dotted: [2, 4], points: [] };
+
+// The curves of a family: distinct colours while they are few, else viridis from its dark end.
+const few = { light: ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#000000"],
+              dark: ["#56B4E9", "#E69F00", "#009E73", "#CC79A7", "#F0E442", "#e6e9ec"] };
+const viridis = [[68, 1, 84], [71, 39, 117], [62, 73, 137], [49, 104, 142], [38, 130, 142], [31, 158, 137],
+                 [53, 183, 121], [110, 206, 88], [181, 222, 43], [253, 231, 37]];
+
+function sequential(part) {
+  const at = Math.min(1, Math.max(0, part)) * (viridis.length - 1), i = Math.min(viridis.length - 2, Math.floor(at));
+  return viridis[i].map((low, channel) => Math.round(low + (at - i) * (viridis[i + 1][channel] - low)));
+}
+
+function colourOf(figure, curve, colours) {
+  if (curve.role !== "family") return colours[curve.role];
+  const levels = [...new Set(figure.curves.filter((c) => c.role === "family").map((c) => c.level))].sort((a, b) => a - b);
+  const rank = levels.indexOf(curve.level), dark = colours === palettes.dark;
+  if (levels.length <= few.light.length) return few[dark ? "dark" : "light"][rank];
+  const part = rank / (levels.length - 1);
+  return `rgb(${sequential(dark ? 0.25 + 0.75 * part : 0.88 * part)})`;
+}
 const font = (size) => `${size}px system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "DejaVu Sans", sans-serif`;
 
 function element(tag, properties = {}, ...children) {
@@ -144,13 +164,15 @@ function makePlot(figure, view, size, colours, holder) {
       { ...common, label: axisTitle(figure.y), size: 66, ...(view.yLog ? logAxis(Math.max(2, size.height / 30)) : linearAxis) },
     ],
     cursor: { points: { size: 7 }, drag: { x: true, y: false } },
-    legend: { markers: { width: 3, dash: (plot, i) => ({ solid: "solid", dashed: "dashed", dotted: "dotted" })[figure.curves[i - 1].line] } },
+    legend: { markers: { width: 3, dash: (plot, i) => ({ solid: "solid", dashed: "dashed", dotted: "dotted", points: "dotted" })[figure.curves[i - 1].line] } },
     series: [
       { label: xAxis.label, value: (plot, x) => (isNumber(x) ? shown(x) : "") },
       ...figure.curves.map((curve, i) => ({
-        label: curve.name, stroke: colours[curve.role], dash: dashes[curve.line],
+        label: curve.name, stroke: colourOf(figure, curve, colours), dash: dashes[curve.line],
         width: curve.role === "fit" ? 4 : 1.75, show: !view.hidden.has(i), spanGaps: true,
-        points: { show: curve.line === "solid" && curve.role !== "fit" && curve.x.length <= 150, size: 4.5, fill: colours[curve.role] },
+        ...(curve.line === "points" ? { paths: () => null } : {}),
+        points: { show: curve.line === "points" || (curve.line === "solid" && curve.role !== "fit" && curve.x.length <= 150),
+                  size: curve.line === "points" ? 8 : 4.5, fill: curve.line === "points" ? "transparent" : colourOf(figure, curve, colours) },
         value: (plot, y, series, at) => {
           if (at === null) return "";
           const error = errors[series][at];
@@ -159,7 +181,7 @@ function makePlot(figure, view, size, colours, holder) {
       })),
     ],
     hooks: {
-      drawSeries: [(plot, series) => drawErrorBars(plot, series, errors, series ? colours[figure.curves[series - 1].role] : "")],
+      drawSeries: [(plot, series) => drawErrorBars(plot, series, errors, series ? colourOf(figure, figure.curves[series - 1], colours) : "")],
       setSeries: [(plot, series, change) => {
         if (series === null || change.show === undefined) return;
         if (change.show) view.hidden.delete(series - 1);
@@ -191,7 +213,7 @@ function pngOf(figure, view, pageTitle, save) {
     pen.font = font(13);
     curves.forEach((curve, i) => {
       const x = 70 + (i % 3) * 275, y = head + size.height + 20 + Math.floor(i / 3) * 26;
-      pen.strokeStyle = colours[curve.role];
+      pen.strokeStyle = colourOf(figure, curve, colours);
       pen.lineWidth = curve.role === "fit" ? 4 : 2;
       pen.setLineDash(dashes[curve.line]);
       pen.beginPath();

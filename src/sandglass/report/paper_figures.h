@@ -1,0 +1,25 @@
+// The figures of the paper, made from the runs of a study, each held against what the paper reports.
+#pragma once
+
+#include <vector>
+
+#include "sandglass/report/figure_data.h"
+#include "sandglass/study/collect.h"
+
+namespace sandglass {
+
+/// Figures 1 to 16 of Gholami, Fiege & Zippelius (2011) and the bond order (17), ids "fig01" ... "fig17". A figure
+/// shows what the study has of it and says in `missing` what the paper has beyond; without any data it says which runs
+/// it would need. docs/figures.md has the rules of the checks.
+std::vector<Figure> paper_figures(const Study& study);
+
+/// Numbers of all state points against density, a curve for each restitution.
+std::vector<Figure> overview_figures(const Study& study);
+
+// By theme, in the order of their numbers.
+void add_velocity_figures(const Study& study, std::vector<Figure>& figures);    ///< 1 to 4
+void add_relaxation_figures(const Study& study, std::vector<Figure>& figures);  ///< 5 to 7, 11 to 13
+void add_diffusion_figures(const Study& study, std::vector<Figure>& figures);   ///< 8 to 10
+void add_structure_figures(const Study& study, std::vector<Figure>& figures);   ///< 14 to 17
+
+}  // namespace sandglass

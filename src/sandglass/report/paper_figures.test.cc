@@ -1,0 +1,146 @@
+#include "sandglass/report/paper_figures.h"
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "sandglass/report/figure_json.h"
+#include "sandglass/report/point_family.h"
+#include "sandglass/report/study_page.h"
+#include "sandglass/report/synthetic_run.test.h"
+
+namespace sandglass {
+namespace {
+
+using Outcome = Check::Outcome;
+
+StatePoint point(double density, double restitution, std::uint64_t particles = 10000, double length = 1e4) {
+  StatePoint p;
+  p.config.system.packing_fraction = density;
+  p.config.collision.restitution = restitution;
+  p.config.system.particles = particles;
+  p.name = "eta=" + std::to_string(density) + "_eps=" + std::to_string(restitution) + "_N=" + std::to_string(particles);
+  Summary summary = synthetic_summary();
+  summary.collisions_per_particle = length;
+  p.replicas = {{"runs/" + p.name, summary}};
+  p.results = synthetic_results();
+  p.numbers["collision_rate"] = {85, 0.1};
+  p.numbers["temperature/small"] = {1.02, 0.001};
+  p.numbers["temperature/big"] = {0.98, 0.001};
+  return p;
+}
+
+Study study_of(std::vector<StatePoint> points) { return {".", std::move(points), {}, {}}; }
+
+const Figure& figure(const std::vector<Figure>& figures, int number) {
+  REQUIRE(figures.size() == 17);
+  return figures[static_cast<std::size_t>(number - 1)];
+}
+
+}  // namespace
+
+TEST_CASE("there are all seventeen, in order, each with a statement and a check, data or the reason why not") {
+  const auto figures = paper_figures(study_of({point(0.8, 0.9)}));
+  REQUIRE(figures.size() == 17);
+  for (int n = 1; n <= 17; ++n) {
+    const Figure& f = figure(figures, n);
+    CHECK(f.id == (n < 10 ? "fig0" : "fig") + std::to_string(n));
+    CHECK(!f.statement.empty());
+    CHECK(!f.checks.empty());
+    CHECK((!f.empty() || !f.missing.empty()));
+  }
+  CHECK(figure(figures, 5).curves.size() == 1);
+  CHECK(figure(figures, 6).empty());
+  CHECK(figure(figures, 6).missing.find("no runs at ε = 0.7") != std::string::npos);
+  CHECK(figure(figures, 13).missing.find("Not measured") != std::string::npos);
+}
+
+TEST_CASE("without data nothing agrees") {
+  StatePoint bare = point(0.3, 0.6);
+  bare.results.clear();
+  bare.numbers.clear();
+  for (const Figure& f : paper_figures(study_of({bare}))) {
+    CHECK(f.empty());
+    CHECK(verdict(f) == Outcome::not_enough_data);
+    CHECK(!f.missing.empty());
+  }
+}
+
+TEST_CASE("the exponent is held against the paper's only at its point") {
+  StatePoint p = point(0.81, 0.9);
+  p.numbers["msd_exponent/small/value"] = {0.55, 0.004};
+  CHECK(figure(paper_figures(study_of({p})), 5).checks[0].outcome == Outcome::agrees);
+  p.numbers["msd_exponent/small/value"] = {0.45, 0.004};
+  CHECK(figure(paper_figures(study_of({p})), 5).checks[0].outcome == Outcome::differs);
+  StatePoint other = point(0.8, 0.9);
+  other.numbers["msd_exponent/small/value"] = {0.55, 0.004};
+  CHECK(figure(paper_figures(study_of({other})), 5).checks[0].outcome == Outcome::not_enough_data);
+}
+
+TEST_CASE("T_s > T_b needs the paper's point and a difference beyond the errors") {
+  CHECK(figure(paper_figures(study_of({point(0.5, 0.9)})), 1).checks[0].outcome == Outcome::agrees);
+  StatePoint equal = point(0.5, 0.9);
+  equal.numbers["temperature/big"] = {1.02, 0.001};
+  CHECK(figure(paper_figures(study_of({equal})), 1).checks[0].outcome == Outcome::not_enough_data);
+  StatePoint reverse = point(0.5, 0.9);
+  reverse.numbers["temperature/big"] = {1.05, 0.001};
+  CHECK(figure(paper_figures(study_of({reverse})), 1).checks[0].outcome == Outcome::differs);
+  const Figure elsewhere = figure(paper_figures(study_of({point(0.8, 0.7)})), 1);
+  CHECK(elsewhere.checks[0].outcome == Outcome::not_enough_data);
+  CHECK(elsewhere.missing.find("nearest") != std::string::npos);
+  CHECK(!elsewhere.empty());
+}
+
+TEST_CASE("of several points at one place the longest is shown, or the largest") {
+  const Study study = study_of({point(0.5, 0.9, 10000, 1e5), point(0.5, 0.9, 400000, 1e3), point(0.6, 0.9)});
+  const Family longest = densities_at(study, 0.9), largest = densities_at(study, 0.9, Prefer::largest);
+  REQUIRE(longest.points.size() == 2);
+  CHECK(longest.points[0]->config.system.particles == 10000);
+  CHECK(largest.points[0]->config.system.particles == 400000);
+}
+
+TEST_CASE("a line of equal t is where the curves pass it") {
+  Figure f;
+  for (const double e : {0.5, 0.9}) {
+    Curve curve{.name = "", .role = Role::family, .level = e};
+    for (const double density : {0.6, 0.7, 0.8}) {
+      curve.x.push_back(density);
+      curve.y.push_back(std::pow(density / 0.7, 20 * e));
+      curve.error.push_back(0.01);
+    }
+    f.curves.push_back(curve);
+  }
+  const Curve line = iso_line(f, 2, "t = 2");
+  REQUIRE(line.x == std::vector{0.5, 0.9});
+  CHECK(line.y[0] == doctest::Approx(0.7 * std::pow(2, 1.0 / 10)));  // ln y is straight in ln x
+  CHECK(line.y[1] == doctest::Approx(0.7 * std::pow(2, 1.0 / 18)));
+}
+
+TEST_CASE("CSV and JSON hold every point, text is quoted") {
+  Figure f{.id = "fig99", .title = "99. A \"title\"\nof two lines", .caption = "", .x = {"x", "", false}};
+  f.curves = {{.name = "a,b", .x = {1, 2}, .y = {3, Measured{}.value}, .error = {0.5, 0.5}}};
+  f.map = HeatMap{.columns = 2, .rows = 1, .values = {5, 6}};
+  const std::string csv = figure_csv(f);
+  CHECK(csv.find("\n# ") != std::string::npos);
+  CHECK(csv.find("\nfig99,\"a,b\",,1,,3,0.5,\n") != std::string::npos);
+  CHECK(csv.find("\nfig99,\"a,b\",,2,,,0.5,\n") != std::string::npos);
+  CHECK(csv.find(",1,,0,,6\n") != std::string::npos);
+  const auto json = nlohmann::json::parse(figure_json(f).dump());
+  CHECK(json["curves"][0]["y"][0] == 3);
+  CHECK(json["curves"][0]["y"][1].is_null());
+  CHECK(json["map"]["values"][1] == 6);
+}
+
+TEST_CASE("links of the page are relative and percent-encoded, text stays text") {
+  CHECK(url_of("runs/eta=0.8 #1/<b>/report.html") == "runs/eta%3D0.8%20%231/%3Cb%3E/report.html");
+  Study study = study_of({point(0.8, 0.9)});
+  study.folder = "/data/study";
+  study.points[0].replicas[0].path = "javascript:alert(1)";
+  study.absent = {{"</script><script>alert(1)</script>", "<img src=x>"}};
+  const std::string html = study_html(study, paper_figures(study), "/data/study/out");
+  CHECK(html.find("\"href\":\"../javascript%3Aalert%281%29/report.html\"") != std::string::npos);
+  CHECK(html.find("<script>alert") == std::string::npos);
+  CHECK(html.find("<img") == std::string::npos);
+}
+
+}  // namespace sandglass

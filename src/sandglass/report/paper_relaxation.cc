@@ -1,0 +1,375 @@
+// Figures 5 to 7 and 11 to 13: how positions are forgotten.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sandglass/report/number.h"
+#include "sandglass/report/paper_figures.h"
+#include "sandglass/report/point_family.h"
+#include "sandglass/study/results.h"
+
+namespace sandglass {
+namespace {
+
+using Outcome = Check::Outcome;
+
+const Axis displacement_axis{"MSD ⟨Δr²⟩", "Rₛ²", true};
+
+std::optional<Curve> displacement(const StatePoint& point) { return small_curve(point, "mean_square_displacement"); }
+
+/// The smallest local exponent of the MSD, over windows of half a decade.
+Measured smallest_exponent(const StatePoint& point) {
+  const auto msd = displacement(point);
+  if (!msd) return {};
+  const Curve slope = local_exponent(*msd, std::sqrt(3.16));
+  const auto at = std::min_element(slope.y.begin(), slope.y.end());
+  if (at == slope.y.end() || slope.error.empty()) return {};
+  return {*at, slope.error[static_cast<std::size_t>(at - slope.y.begin())]};
+}
+
+Check cages(const Family& family) {
+  Check check{"A cage for η ≥ 0.70: the smallest local exponent is below 1", Outcome::not_enough_data,
+              "There are no runs at η ≥ 0.70."};
+  std::string caged, free, unclear;
+  for (const StatePoint* point : family.points) {
+    const Measured exponent = smallest_exponent(*point);
+    if (point->packing_fraction() < 0.6999 || !std::isfinite(exponent.error)) continue;
+    const double error = significant_extreme * exponent.error;
+    std::string& list = exponent.value < 1 - error ? caged : error < 0.1 ? free : unclear;
+    list += fmt::format(" {} at η = {:g};", with_error(exponent.value, exponent.error), point->packing_fraction());
+  }
+  if (caged.empty() && free.empty() && unclear.empty()) return check;
+  check.outcome = !free.empty() ? Outcome::differs : caged.empty() ? Outcome::not_enough_data : Outcome::agrees;
+  check.finding = (free.empty() ? "" : "No cage:" + free) + (unclear.empty() ? "" : " not clear:" + unclear) +
+                  (caged.empty() ? "" : " a cage, with smallest exponent:" + caged);
+  check.finding.erase(0, check.finding.find_first_not_of(' '));
+  check.finding.back() = '.';
+  return check;
+}
+
+Check diffusion_regained(const Family& family) {
+  Check check{"Diffusion is regained at long times for η = 0.70 to 0.77", Outcome::not_enough_data,
+              "There are no runs at these densities."};
+  std::string diffusive, slower;
+  for (const StatePoint* point : family.points) {
+    const double density = point->packing_fraction();
+    const auto msd = displacement(*point);
+    if (density < 0.6999 || density > 0.7701 || !msd) continue;
+    const Curve slope = local_exponent(*msd);
+    if (slope.y.empty() || slope.error.empty()) continue;
+    const Measured last{slope.y.back(), slope.error.back()};
+    const bool regained = last.value > 0.9 && msd->y.back() > 1;
+    (regained ? diffusive : slower) += fmt::format(" {} at η = {:g};", with_error(last.value, last.error), density);
+  }
+  if (diffusive.empty() && slower.empty()) return check;
+  check.outcome = slower.empty() ? Outcome::agrees : Outcome::not_enough_data;
+  check.finding = slower.empty() ? "Last local exponents:" + diffusive
+                                 : "Not yet above 0.9 beyond MSD = 1, so these runs are too short:" + slower;
+  check.finding.back() = '.';
+  return check;
+}
+
+Check exponent_check(const Family& family, const Measured& paper) {
+  const std::string claim = fmt::format("At η = 0.81 MSD ~ t^{} over 1 < t < 10", with_error(paper.value, paper.error));
+  for (const StatePoint* point : family.points) {
+    if (!same_level(point->packing_fraction(), 0.81)) continue;
+    const auto msd = displacement(*point);
+    const bool covered = msd && msd->x.back() > 9;
+    const std::string where =
+        fmt::format("with N = {}, {} start{} and {} collisions per disk in all", point->config.system.particles,
+                    point->replicas.size(), point->replicas.size() == 1 ? "" : "s", short_number(point->length()));
+    return compare(claim, covered ? point->number("msd_exponent/small/value") : Measured{}, paper,
+                   covered ? where : "up to t = 10 at η = 0.81");
+  }
+  return {claim, Outcome::not_enough_data, "There is no run at η = 0.81."};
+}
+
+Figure displacements(const Study& study, int number, double restitution, const Measured& paper) {
+  Figure figure = paper_figure(
+      number, fmt::format("Mean square displacement, ε = {:g}", restitution),
+      "Small disks. Inset: the local exponent d ln MSD / d ln t; 2 is free flight, 1 diffusion, less a cage.", lag_axis,
+      displacement_axis,
+      fmt::format("A cage appears for η ≥ 0.70, diffusion is regained at long times up to η = 0.77. At η = 0.81 the "
+                  "exponent over 1 < t < 10 is {}.",
+                  with_error(paper.value, paper.error)));
+  figure.alternative_x = collisions_axis;
+  const Family family = densities_at(study, restitution);
+  add_family(figure, family, paper_densities, "mean square displacement", displacement);
+  Figure inset = part_of(figure, "_exponent", "Local exponent", {"t", "", true}, {"exponent", "", false});
+  inset.family = figure.family;
+  for (const Curve& curve : figure.curves) {
+    Curve slope = local_exponent(curve);
+    slope.error.clear();
+    slope.alternative_x.clear();
+    inset.curves.push_back(std::move(slope));
+  }
+  if (!inset.curves.empty()) {
+    inset.y_range = {{0, 2.1}};
+    figure.insets = {std::move(inset)};
+  }
+  figure.checks = {exponent_check(family, paper), cages(family), diffusion_regained(family)};
+  return figure;
+}
+
+/// t(MSD_s = 1) of a point.
+Measured unit_time(const StatePoint& point) {
+  const auto msd = displacement(point);
+  return msd ? crossing(*msd, 1) : Measured{};
+}
+
+std::vector<Ranked> ranked(const Curve& curve) {
+  std::vector<Ranked> sequence;
+  for (std::size_t i = 0; i < curve.x.size(); ++i)
+    sequence.push_back({curve.x[i], {curve.y[i], curve.error.empty() ? Measured{}.error : curve.error[i]}});
+  return sequence;
+}
+
+Figure unit_times(const Study& study) {
+  Figure figure = paper_figure(7, "Time to move by one radius", "t at which the MSD of the small disks is Rₛ².",
+                               density_axis, {"t(MSD = 1)", "Rₛ √(mₛ/T₀)", true},
+                               "t(MSD = 1) grows with η, the more so the more elastic the disks; the lines "
+                               "t = 3, 5, 8 in the (η, ε) plane fall monotonically with ε.");
+  figure.family = restitution_axis;
+  std::vector<double> lacking(paper_restitutions.begin(), paper_restitutions.end());
+  std::vector<Check> with_density, with_restitution, lines;
+  for (const double restitution : restitutions_of(study)) {
+    Curve curve{.name = fmt::format("ε = {:g}", restitution), .role = Role::family, .level = restitution};
+    for (const StatePoint* point : densities_at(study, restitution).points) {
+      const Measured time = unit_time(*point);
+      if (!std::isfinite(time.value)) continue;
+      curve.x.push_back(point->packing_fraction());
+      curve.y.push_back(time.value);
+      curve.error.push_back(time.error);
+    }
+    std::erase_if(lacking, [&](double e) { return same_level(e, restitution); });
+    if (curve.x.empty()) continue;
+    with_density.push_back(rises("", ranked(curve), fmt::format("At ε = {:g} t(MSD = 1)", restitution), "η"));
+    figure.curves.push_back(std::move(curve));
+  }
+  if (!lacking.empty()) figure.missing = fmt::format("Not in this study: ε = {}.", listed(lacking));
+  if (figure.curves.empty()) figure.missing += " No run reaches MSD = 1.";
+  for (const double density : densities_of(study)) {
+    if (density < 0.6999) continue;
+    std::vector<Ranked> sequence;
+    for (const StatePoint* point : restitutions_at(study, density).points)
+      sequence.push_back({point->restitution(), unit_time(*point)});
+    with_restitution.push_back(rises("", sequence, fmt::format("At η = {:g} t(MSD = 1)", density), "ε"));
+  }
+  Figure panel = part_of(figure, "b", "Lines of equal t(MSD = 1)", restitution_axis, density_axis);
+  panel.family = {"t(MSD = 1)", "", false};
+  for (const double time : {3.0, 5.0, 8.0}) {
+    Curve line = iso_line(figure, time, fmt::format("t = {:g}", time));
+    lines.push_back(falls("", ranked(line), fmt::format("On t = {:g} η", time), "ε"));
+    if (!line.x.empty()) panel.curves.push_back(std::move(line));
+  }
+  if (panel.curves.empty()) panel.missing = "No restitution of this study passes t = 3, 5 or 8 between two densities.";
+  figure.panels = {std::move(panel)};
+  figure.checks = {joined("t(MSD = 1) grows with η", with_density),
+                   joined("t(MSD = 1) grows with ε (η ≥ 0.70)", with_restitution),
+                   joined("The lines t = 3, 5, 8 fall with ε", lines)};
+  return figure;
+}
+
+/// tau: S_inc(k, tau) = 1/2.
+Measured relaxation_time(const StatePoint& point, double wavenumber) {
+  const auto curve = small_curve(point, "self_intermediate_scattering", wavenumber);
+  return curve ? crossing(*curve, 0.5) : Measured{};
+}
+
+Figure slow_scattering(const Study& study) {
+  constexpr double k = 0.5;
+  const double restitution = shown_restitution(study, 0.9);
+  Figure figure =
+      paper_figure(11, fmt::format("Incoherent scattering, k = 0.5, ε = {:g}", restitution),
+                   "Small disks: memory of positions on the length 2π/k = 12.6 Rₛ. Inset: the relaxation "
+                   "time τ, S_inc(0.5, τ) = 1/2.",
+                   lag_axis, {"S_inc(0.5, t)", "", false}, "τ diverges on approach to the glass transition.");
+  figure.alternative_x = collisions_axis;
+  const Family family = densities_at(study, restitution);
+  add_family(figure, family, paper_densities, "S_inc(0.5, t)",
+             [](const StatePoint& p) { return small_curve(p, "self_intermediate_scattering", k); });
+  Figure inset = part_of(figure, "_tau", "Relaxation time", {"η", "", false}, {"τ", "", true});
+  Curve curve{.name = "τ(0.5)", .role = Role::small};
+  for (const StatePoint* point : family.points) {
+    const Measured tau = relaxation_time(*point, k);
+    if (!std::isfinite(tau.value)) continue;
+    curve.x.push_back(point->packing_fraction());
+    curve.y.push_back(tau.value);
+    curve.error.push_back(tau.error);
+  }
+  const Check growth = rises("τ grows with η", ranked(curve), "τ", "η");
+  Check divergence{"τ diverges: d ln τ / dη at the highest densities exceeds that at the lowest",
+                   Outcome::not_enough_data, "τ is known at fewer than three densities."};
+  if (curve.x.size() >= 3) {
+    const std::size_t n = curve.x.size();
+    const auto slope = [&](std::size_t a, std::size_t b) -> Measured {
+      const double width = curve.x[b] - curve.x[a];
+      return {std::log(curve.y[b] / curve.y[a]) / width,
+              std::hypot(curve.error[a] / curve.y[a], curve.error[b] / curve.y[b]) / width};
+    };
+    const Measured low = slope(0, 1), high = slope(n - 2, n - 1);
+    const double difference = high.value - low.value, error = standard_error_of_difference(low, high);
+    if (std::abs(difference) > significant_order * error)
+      divergence.outcome = difference > 0 ? Outcome::agrees : Outcome::differs;
+    divergence.finding = fmt::format("d ln τ / dη is {} at η = {:g} and {} at {:g}.", with_error(low.value, low.error),
+                                     (curve.x[0] + curve.x[1]) / 2, with_error(high.value, high.error),
+                                     (curve.x[n - 2] + curve.x[n - 1]) / 2);
+  }
+  if (!curve.x.empty()) {
+    inset.curves = {std::move(curve)};
+    figure.insets = {std::move(inset)};
+  }
+  figure.checks = {growth, divergence};
+  return figure;
+}
+
+/// The greatest |S - Gaussian| of a curve, with the error of S there.
+Measured deviation(const StatePoint& point, double k, double until) {
+  const auto s = small_curve(point, "self_intermediate_scattering", k);
+  const auto gaussian = small_curve(point, "gaussian_approximation", k);
+  Measured worst;
+  if (!s || !gaussian || s->x != gaussian->x || s->error.empty()) return worst;
+  for (std::size_t i = 0; i < s->x.size() && s->x[i] <= until; ++i) {
+    const double difference = std::abs(s->y[i] - gaussian->y[i]);
+    if (!(difference <= worst.value)) worst = {difference, s->error[i]};
+  }
+  return worst;
+}
+
+Check gaussian_check(const Family& family, bool dense) {
+  constexpr double k = 3, tolerance = 0.02;
+  Check check{dense ? "At the highest density the Gaussian approximation fails at long times (by more than 0.02)"
+                    : "At low density (η ≤ 0.3) the Gaussian approximation holds at all times (within 0.02)",
+              Outcome::not_enough_data, dense ? "There is no run at η ≥ 0.78." : "There is no run at η ≤ 0.3."};
+  const StatePoint* point = nullptr;
+  for (const StatePoint* p : family.points)
+    if (std::isfinite(deviation(*p, k, INFINITY).value) &&
+        (dense ? p->packing_fraction() > 0.7799 : point == nullptr && p->packing_fraction() < 0.3001))
+      point = p;
+  if (point == nullptr) return check;
+  const Measured worst = deviation(*point, k, INFINITY);
+  const bool fails = worst.value > tolerance + significant_order * worst.error;
+  const bool unclear = !fails && worst.value > tolerance;
+  check.outcome = unclear ? Outcome::not_enough_data : fails == dense ? Outcome::agrees : Outcome::differs;
+  if (dense && !fails) check.outcome = Outcome::not_enough_data;  // a longer run may still show it
+  check.finding = fmt::format("At η = {:g} the two differ by at most {}.", point->packing_fraction(),
+                              with_error(worst.value, worst.error));
+  return check;
+}
+
+/// Two steps: the decay per decade of time has a minimum between two maxima.
+Check two_steps(const Family& family) {
+  Check check{"S_inc(3, t) decays in two steps for η ≥ 0.78: its slope against ln t has a minimum between two maxima",
+              Outcome::not_enough_data, "There is no run at η ≥ 0.78."};
+  std::string two, one;
+  for (const StatePoint* point : family.points) {
+    auto s = small_curve(*point, "self_intermediate_scattering", 3);
+    if (!s || point->packing_fraction() < 0.7799 || s->error.empty()) continue;
+    for (double& x : s->x) x = std::log(x);
+    std::vector<double> slope, error;
+    for (std::size_t i = 2; i + 2 < s->x.size(); ++i) {
+      const double width = s->x[i + 2] - s->x[i - 2];
+      slope.push_back((s->y[i - 2] - s->y[i + 2]) / width);
+      error.push_back(std::hypot(s->error[i - 2], s->error[i + 2]) / width);
+    }
+    bool found = false;
+    for (std::size_t i = 0; i < slope.size(); ++i) {
+      const auto higher = [&](std::size_t j) {
+        return slope[j] - slope[i] > significant_order * std::hypot(error[i], error[j]);
+      };
+      bool before = false, after = false;
+      for (std::size_t j = 0; j < slope.size(); ++j)
+        if (std::isfinite(slope[i]) && higher(j)) (j < i ? before : after) = true;
+      found = found || (before && after);
+    }
+    (found ? two : one) += fmt::format(" {:g}", point->packing_fraction());
+  }
+  if (two.empty() && one.empty()) return check;
+  check.outcome = one.empty() ? Outcome::agrees : Outcome::not_enough_data;
+  check.finding = fmt::format("Two steps at η ={}{}{}.", two.empty() ? " none" : two,
+                              one.empty() ? "" : "; the second is not seen (yet) at", one);
+  return check;
+}
+
+Figure fast_scattering(const Study& study) {
+  constexpr double k = 3;
+  const double restitution = shown_restitution(study, 0.9);
+  Figure figure = paper_figure(12, fmt::format("Incoherent scattering, k = 3, ε = {:g}", restitution),
+                               "Small disks, memory on the length 2π/k = 2.1 Rₛ. Dashed: the Gaussian approximation "
+                               "exp(−k²⟨Δr²⟩/4).",
+                               lag_axis, {"S_inc(3, t)", "", false},
+                               "Two-step decay for η ≥ 0.78. The Gaussian approximation holds at all times at low "
+                               "density, only at short times at the highest.");
+  figure.alternative_x = collisions_axis;
+  const Family family = densities_at(study, restitution);
+  add_family(figure, family, paper_densities, "S_inc(3, t)",
+             [](const StatePoint& p) { return small_curve(p, "self_intermediate_scattering", k); });
+  Figure gaussians = figure;
+  gaussians.curves.clear();
+  add_family(gaussians, family, {}, "", [](const StatePoint& p) {
+    auto curve = small_curve(p, "gaussian_approximation", k);
+    if (curve) {
+      curve->name = fmt::format("η = {:g}, Gaussian", p.packing_fraction());
+      curve->line = Line::dashed;
+      curve->error.clear();
+    }
+    return curve;
+  });
+  figure.curves.insert(figure.curves.end(), gaussians.curves.begin(), gaussians.curves.end());
+  figure.checks = {two_steps(family), gaussian_check(family, false), gaussian_check(family, true)};
+  return figure;
+}
+
+Figure mobilities(const Study& study) {
+  Figure figure = paper_figure(13, "Fast and slow disks",
+                               "MSD of the tenth of the disks that move farthest, and least, within the selection "
+                               "time; dashed: small disks only.",
+                               lag_axis, displacement_axis,
+                               "At η = 0.8, ε = 0.9 the slowest tenth (by displacement at t = 10³) is immobile, the "
+                               "fastest diffuses over several radii.");
+  figure.alternative_x = collisions_axis;
+  const std::string place = "/dynamics/small/mobility/fastest/value";
+  const StatePoint* point = shown_point(study, 0.8, 0.9, figure,
+                                        [&](const StatePoint& p) { return find_dataset(p.results, place) != nullptr; });
+  Check fast{"The fastest tenth moves over several radii: MSD > 4 Rₛ² at t = 10³", Outcome::not_enough_data, ""};
+  Check slow{"The slowest tenth is immobile: MSD < 0.1 Rₛ² at t = 10³", Outcome::not_enough_data, ""};
+  fast.finding = slow.finding = "There is no run at η = 0.8, ε = 0.9 that measures it.";
+  if (point == nullptr) {
+    figure.checks = {fast, slow};
+    return figure;
+  }
+  const auto whole = displacement(*point);
+  if (whole) {
+    figure.curves.push_back(*whole);
+    figure.curves.back().name = "all small disks", figure.curves.back().role = Role::all;
+  }
+  for (const auto& [speed, role] : {std::pair("fastest", Role::big), std::pair("slowest", Role::small)}) {
+    auto curve = small_curve(*point, fmt::format("mobility/{}", speed));
+    if (!curve) continue;
+    curve->name = fmt::format("{} tenth", speed), curve->role = role, curve->line = Line::dashed;
+    figure.curves.push_back(*curve);
+    if (!is_point(point, 0.8, 0.9)) continue;
+    const Measured far = value_at(*curve, 1000);
+    Check& check = role == Role::big ? fast : slow;
+    check.finding = std::isfinite(far.value)
+                        ? fmt::format("The MSD at t = 10³ is {} Rₛ².", with_error(far.value, far.error))
+                        : fmt::format("The curve ends at t = {}.", short_number(curve->x.back()));
+    if (!std::isfinite(far.error)) continue;
+    const double excess = (far.value - (role == Role::big ? 4 : 0.1)) * (role == Role::big ? 1 : -1);
+    if (std::abs(excess) > significant * far.error) check.outcome = excess > 0 ? Outcome::agrees : Outcome::differs;
+  }
+  figure.checks = {fast, slow};
+  return figure;
+}
+
+}  // namespace
+
+void add_relaxation_figures(const Study& study, std::vector<Figure>& figures) {
+  figures.push_back(displacements(study, 5, 0.9, {0.547, 0.006}));
+  figures.push_back(displacements(study, 6, 0.7, {0.6163, 0.0011}));
+  for (Figure (*make)(const Study&) : {unit_times, slow_scattering, fast_scattering, mobilities})
+    figures.push_back(make(study));
+}
+
+}  // namespace sandglass

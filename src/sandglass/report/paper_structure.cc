@@ -1,0 +1,218 @@
+// Figures 14 to 17: where the disks are.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sandglass/report/number.h"
+#include "sandglass/report/paper_figures.h"
+#include "sandglass/report/point_family.h"
+#include "sandglass/study/results.h"
+
+namespace sandglass {
+namespace {
+
+using Outcome = Check::Outcome;
+
+constexpr std::array<double, 6> structure_densities{0.5, 0.52, 0.55, 0.58, 0.6, 0.8};
+
+/// A function of one argument as it stands in the results.
+std::optional<Curve> plain_curve(const StatePoint& point, const std::string& group, const std::string& x,
+                                 const std::string& y, const std::string& error) {
+  Curve all{.name = ""};
+  all.x = numbers_of(point.results, group + "/" + x);
+  const auto values = numbers_of(point.results, group + "/" + y),
+             errors = numbers_of(point.results, group + "/" + error);
+  if (values.empty() || values.size() != all.x.size()) return std::nullopt;
+  Curve curve{.name = ""};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    curve.x.push_back(all.x[i]);
+    curve.y.push_back(values[i]);
+    if (errors.size() == values.size()) curve.error.push_back(errors[i]);
+  }
+  return curve;
+}
+
+std::optional<Curve> radial(const StatePoint& point, const std::string& pair) {
+  return plain_curve(point, "/structure/radial_distribution", "r", pair, pair + "_error");
+}
+
+/// Depth of the dip between the two halves of the second peak: the lower of the highest values on both sides of a
+/// point, minus the value there, at its greatest; the error is that of the difference. The second peak reaches from the
+/// first minimum, behind the contact distance, to two disks with a big one between them in a straight line.
+Measured splitting(const Curve& curve, double contact, double across) {
+  const Curve valley = between(curve, 1.2 * contact, 2 * contact);
+  const auto lowest = std::min_element(valley.y.begin(), valley.y.end());
+  if (lowest == valley.y.end()) return {};
+  const double first = valley.x[static_cast<std::size_t>(lowest - valley.y.begin())];
+  const Curve peak = between(curve, first, 1.08 * across);
+  if (peak.x.size() < 5 || peak.error.empty()) return {};
+  Measured deepest{0, *std::max_element(peak.error.begin(), peak.error.end())};
+  for (std::size_t i = 1; i + 1 < peak.y.size(); ++i) {
+    const auto here = peak.y.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto left = std::max_element(peak.y.begin(), here), right = std::max_element(here + 1, peak.y.end());
+    const auto lower = *left < *right ? left : right;
+    const double depth = *lower - *here;
+    if (depth > deepest.value)
+      deepest = {depth, std::hypot(peak.error[static_cast<std::size_t>(lower - peak.y.begin())], peak.error[i])};
+  }
+  return deepest;
+}
+
+Check split_check(const Family& family, const std::string& pair) {
+  Check check{"The second peak is split at η ≥ 0.58 and not at η ≤ 0.52 (a dip of more than five errors)",
+              Outcome::not_enough_data, "It takes g(r) with errors, in bins below 0.3 Rₛ, on both sides of 0.55."};
+  std::string split, whole, unclear;
+  bool below = false, above = false, wrong = false;
+  for (const StatePoint* point : family.points) {
+    const auto curve = radial(*point, pair);
+    const double density = point->packing_fraction();
+    if (!curve || density < 0.45) continue;
+    const double big = point->config.system.size_ratio, contact = pair == "small_small" ? 2 : 2 * big;
+    const Measured dip = splitting(*curve, contact, contact + 2 * big);
+    if (!std::isfinite(dip.error)) continue;
+    const bool is_split = dip.value > significant_extreme * dip.error;
+    if (!is_split && significant_extreme * dip.error > 0.1) {
+      unclear += fmt::format(" {:g}", density);
+      continue;
+    }
+    (is_split ? split : whole) += fmt::format(" {:g}", density);
+    if (density < 0.5201) below = true, wrong = wrong || is_split;
+    if (density > 0.5799) above = true, wrong = wrong || !is_split;
+  }
+  if (!unclear.empty()) check.finding = fmt::format("Errors are too large to tell at η ={}.", unclear);
+  if (split.empty() && whole.empty()) return check;
+  check.finding = fmt::format("Split at η ={}; one peak at η ={}{}{}.", split.empty() ? " none" : split,
+                              whole.empty() ? " none" : whole,
+                              unclear.empty() ? "" : "; errors are too large to tell at η =", unclear);
+  if (wrong)
+    check.outcome = Outcome::differs;
+  else if (below && above)
+    check.outcome = Outcome::agrees;
+  return check;
+}
+
+Figure radial_figure(const Study& study, int number, const std::string& pair, const std::string& symbol,
+                     const std::string& disks) {
+  const double restitution = shown_restitution(study, 0.9);
+  Figure figure = paper_figure(number, fmt::format("Pair correlation of the {} disks, ε = {:g}", disks, restitution),
+                               fmt::format("{}(r) against density; 1 where positions are independent.", symbol),
+                               {"distance r", "Rₛ", false}, {symbol + "(r)", "", false},
+                               "The second peak splits near η = 0.55, more strongly for the big disks.");
+  const Family family = densities_at(study, restitution, Prefer::largest);
+  add_family(figure, family, structure_densities, "g(r)", [&](const StatePoint& p) -> std::optional<Curve> {
+    const auto curve = radial(p, pair);
+    return curve ? std::optional(between(*curve, 1.5, 12)) : std::nullopt;
+  });
+  figure.checks = {split_check(family, pair)};
+  return figure;
+}
+
+/// S(k) at k = spacing (m - M, n - M) from map[m, n], M the middle. The mode (M, M), which holds N, is left out.
+std::optional<HeatMap> scattering_map(const StatePoint& point) {
+  const std::string group = "/structure/structure_factor/small/";
+  const Dataset* data = find_dataset(point.results, group + "map");
+  const auto values = numbers_of(point.results, group + "map"), spacing = numbers_of(point.results, group + "spacing");
+  if (data == nullptr || spacing.empty() || data->shape.size() != 2 || data->shape[0] != data->shape[1] ||
+      data->shape[0] % 2 == 0)
+    return std::nullopt;
+  const std::size_t side = data->shape[0], middle = side / 2;
+  HeatMap map;
+  map.x0 = map.y0 = -static_cast<double>(middle) * spacing.front();
+  map.dx = map.dy = spacing.front();
+  map.columns = map.rows = side;
+  map.scale = {"S(k)", "", true};
+  map.values.resize(side * side);
+  for (std::size_t m = 0; m < side; ++m)
+    for (std::size_t n = 0; n < side; ++n) map.values[n * side + m] = values[m * side + n];
+  map.values[middle * side + middle] = Measured{}.value;
+  return map;
+}
+
+Figure structure_map(const Study& study) {
+  Figure figure = paper_figure(
+      16, "Structure factor of the small disks",
+      "S(k) in the plane of wave vectors, averaged over frames. Inset: its average over rings.", {"k_x", "1/Rₛ", false},
+      {"k_y", "1/Rₛ", false}, "Isotropic rings: no crystalline order (η = 0.80 in the text, 0.81 in the caption).");
+  const StatePoint* point =
+      shown_point(study, 0.81, 0.9, figure, [](const StatePoint& p) { return scattering_map(p).has_value(); });
+  Check check{"S(k) is isotropic: the sixfold anisotropy of the ring of the main peak is below 0.1, beyond its noise",
+              Outcome::not_enough_data, "It was not measured at η ≥ 0.80."};
+  if (point != nullptr) {
+    figure.map = scattering_map(*point);
+    const std::string ring = "/structure/structure_factor/small/ring";
+    auto curve = plain_curve(*point, ring, "wavenumber", "value", "error");
+    const auto anisotropy = numbers_of(point->results, ring + "/anisotropy");
+    if (curve) {
+      const auto count = numbers_of(point->results, ring + "/count");
+      std::size_t peak = 0;  // beyond k = 2, where the composition does not fluctuate
+      for (std::size_t i = 0; i < curve->x.size(); ++i)
+        if (curve->x[i] > 2 && (curve->x[peak] <= 2 || curve->y[i] > curve->y[peak])) peak = i;
+      if (point->packing_fraction() > 0.7999 && peak < anisotropy.size() && count.size() == anisotropy.size()) {
+        const double noise = 1 / std::sqrt(count[peak]), bound = 0.1 + 2 * noise;
+        if (bound < 0.4) check.outcome = anisotropy[peak] < bound ? Outcome::agrees : Outcome::differs;
+        check.finding = fmt::format("It is {:.2g} at k = {:.3g}, with noise of about {:.2g} (1 for six sharp spots).",
+                                    anisotropy[peak], curve->x[peak], noise);
+      }
+      Figure inset = part_of(figure, "_ring", "Ring average", {"k", "1/Rₛ", false}, {"S(k)", "", false});
+      curve->name = "S(k)", curve->role = Role::small;
+      inset.curves = {std::move(*curve)};
+      figure.insets = {std::move(inset)};
+    }
+  }
+  figure.checks = {check};
+  return figure;
+}
+
+Figure bond_order(const Study& study) {
+  const double restitution = shown_restitution(study, 0.9);
+  Figure figure = paper_figure(
+      17, "Sixfold bond order", "ψ₆ of the whole system against density (all disks). Right: its correlation g₆(r).",
+      density_axis, {"ψ₆", "", false}, "No long-range bond order: the dense states are glasses, not crystals.");
+  figure.family = restitution_axis;
+  for (const double e : restitutions_of(study)) {
+    Curve curve{.name = fmt::format("ε = {:g}", e), .role = Role::family, .level = e};
+    for (const StatePoint* point : densities_at(study, e).points) {
+      const auto value = numbers_of(point->results, "/structure/bond_order/global");
+      const auto error = numbers_of(point->results, "/structure/bond_order/global_error");
+      if (value.empty() || !std::isfinite(value.front())) continue;
+      curve.x.push_back(point->packing_fraction());
+      curve.y.push_back(value.front());
+      curve.error.push_back(error.empty() ? Measured{}.error : error.front());
+    }
+    if (!curve.x.empty()) figure.curves.push_back(std::move(curve));
+  }
+  if (figure.curves.empty()) figure.missing = "Not measured in these runs: /structure/bond_order.";
+  Figure panel = part_of(figure, "b", fmt::format("Correlation of the bond order, ε = {:g}", restitution),
+                         {"distance r", "Rₛ", false}, {"g₆(r)", "", false});
+  const Family family = densities_at(study, restitution, Prefer::largest);
+  add_family(panel, family, {}, "g₆(r)", [](const StatePoint& p) {
+    return plain_curve(p, "/structure/bond_order/correlation", "r", "value", "error");
+  });
+  Check check{"No long-range order at η ≥ 0.78: beyond 15 Rₛ |g₆| stays below 0.1", Outcome::not_enough_data,
+              "g₆(r) beyond 15 Rₛ was not measured at η ≥ 0.78."};
+  for (const Curve& curve : panel.curves) {
+    const Curve far = between(curve, 15, std::numeric_limits<double>::infinity());
+    if (curve.level < 0.7799 || far.y.empty()) continue;
+    double mean = 0;
+    for (const double y : far.y) mean += y / static_cast<double>(far.y.size());
+    check.outcome = std::abs(mean) < 0.1 && check.outcome != Outcome::differs ? Outcome::agrees : Outcome::differs;
+    check.finding = fmt::format("The mean of g₆ beyond 15 Rₛ is {} at η = {:g}.", short_number(mean), curve.level);
+    if (check.outcome == Outcome::differs) break;
+  }
+  if (!panel.curves.empty()) figure.panels = {std::move(panel)};
+  figure.checks = {check};
+  return figure;
+}
+
+}  // namespace
+
+void add_structure_figures(const Study& study, std::vector<Figure>& figures) {
+  figures.push_back(radial_figure(study, 14, "small_small", "g_ss", "small"));
+  figures.push_back(radial_figure(study, 15, "big_big", "g_bb", "big"));
+  figures.push_back(structure_map(study));
+  figures.push_back(bond_order(study));
+}
+
+}  // namespace sandglass
