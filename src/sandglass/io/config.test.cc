@@ -237,6 +237,13 @@ TEST_CASE("what no single key can tell") {
   CHECK(refused("output.trajectory_frames = 1", {}, {"0 (no file) or at least 2"}));
 }
 
+TEST_CASE("partners beyond half the box, restitutions next to 1, a path with a null character") {
+  CHECK(refused("drive.partner = \"within\"", {"drive.reach=999"}, {"drive.reach = 999", "at most"}));
+  CHECK(from_text("drive.reach = 999").drive.reach == 999);  // not used
+  CHECK(refused("collision.restitution = 0.9995", {}, {"0.9995", "at most 0.999"}));
+  CHECK(refused("prepare.file = \"a\\u0000b\"", {"prepare.method=file"}, {"test.toml:1", "null character"}));
+}
+
 TEST_CASE("wavenumbers that the box holds too many waves of") {
   CHECK(refused("observe.wavenumbers = [1, 1e4]", {"system.particles=4000000"}, {"observe.wavenumbers", "at most"}));
   CHECK(from_text("observe.wavenumbers = [1, 50]", {"system.particles=4000000"}).observe.wavenumbers[1] == 50);

@@ -14,7 +14,8 @@ using Shape = std::vector<std::size_t>;
 /// An open file; closed when it goes. Objects are named by absolute path; groups are made on the way. Element types are
 /// double, std::uint64_t, std::int64_t, std::int32_t and std::uint8_t, stored little-endian. No message of the library
 /// reaches the terminal: failures to write are RunErrors, everything wrong with a file that is read is an InputError
-/// naming file and object. Nothing is allocated before type and shape are known to be sane.
+/// naming file and object. Nothing is allocated before type and shape are known to be sane, no other file is opened
+/// (external links and data, virtual datasets), and integers that do not fit are refused, not clipped.
 class Hdf5File {
  public:
   static Hdf5File create(const std::filesystem::path& path, std::size_t user_block = 0);

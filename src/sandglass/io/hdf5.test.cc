@@ -100,6 +100,9 @@ TEST_CASE("what is no HDF5 file is bad input") {
     CHECK_THROWS_AS(Hdf5File::open(path), InputError);
   }
   CHECK_THROWS_AS(Hdf5File::create(folder / "no/such/folder.h5"), InputError);
+  for (const auto& path : {folder / "text", folder / "absent", folder.path()}) {
+    CHECK_THROWS_AS(Hdf5File::open_to_write(path), RunError);
+  }
 }
 
 TEST_CASE("observables: groups from paths, units, whole or not at all") {

@@ -35,13 +35,13 @@ void edit(const std::filesystem::path& path, const std::function<void(hid_t)>& c
   change(file);
 }
 
-/// Why a trajectory is refused after `change`; empty if it is not.
+/// Why a trajectory is refused after `change`; empty if it is not. (Read in this process, where a fault would be seen.)
 std::string refusal(const std::function<void(hid_t)>& change) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder / "trajectory.h5";
   write_good_trajectory(path);
   edit(path, change);
-  return message_of<InputError>([&] { (void)read_start_file(path); });
+  return message_of<InputError>([&] { (void)read_last_frame(path); });
 }
 
 /// Overwrites element `index` of a dataset.
