@@ -308,7 +308,14 @@ TEST_CASE("merging adds the intervals of an independent run") {
   feed(one, [&](double t, Frame& f) { noise_frame(t, 1, n, f); });
   feed(two, [&](double t, Frame& f) { noise_frame(t, 2, n, f); });
   const IntervalSeries a = one.mean_square_displacement(Group::all), b = two.mean_square_displacement(Group::all);
+  const auto first = one.results(), second = two.results();
   one.merge(two);
+  const auto merged = one.results();
+  for (const char* name : {"/dynamics/small/van_hove/value", "/dynamics/big/mobility/fastest/value",
+                           "/dynamics/all/cage_relative_displacement/value", "/dynamics/all/overlap/value"}) {
+    const auto &x = values(first, name), &y = values(second, name), &z = values(merged, name);
+    for (std::size_t i = 0; i < z.size(); ++i) CHECK(z[i] == doctest::Approx((x[i] + y[i]) / 2).epsilon(1e-12));
+  }
   const IntervalSeries both = one.mean_square_displacement(Group::all);
   REQUIRE(both.intervals == 6);
   for (std::size_t lag = 0; lag < both.time.size(); ++lag) {

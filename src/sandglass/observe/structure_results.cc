@@ -68,7 +68,8 @@ void StructureSampler::append_pairs(std::vector<Dataset>& results) const {
   std::vector<double> r;
   for (std::size_t bin = 0; bin < bins_; ++bin) r.push_back((static_cast<double>(bin) + 0.5) * bin_width_);
   append(results, path + "r", r, "R_s");
-  results.back().attributes = {{"bin_width", bin_width_}};
+  results.back().attributes = {{"bin_width", bin_width_},
+                               {"frames", static_cast<double>(finished().size() * frames_per_block_)}};
   const auto add = [&](const std::string& name, std::size_t first, std::size_t last) {
     double pairs = 0;
     for (std::size_t pair = first; pair <= last; ++pair) pairs += pair_count(population_, pair);
