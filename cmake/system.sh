@@ -4,8 +4,8 @@
 # second as well.
 build_packages=(g++ cmake ninja-build libcli11-dev libfmt-dev libtomlplusplus-dev nlohmann-json3-dev libhdf5-dev
                 librandom123-dev doctest-dev librapidcheck-dev)
-test_packages=(clang-format-14 libbenchmark-dev chromium fonts-dejavu-core python3 python3-numpy python3-h5py
-               slurmctld slurmd slurm-client munge parallel)
+test_packages=(clang-format-14 clang-14 libclang-rt-14-dev libbenchmark-dev chromium fonts-dejavu-core python3
+               python3-numpy python3-h5py slurmctld slurmd slurm-client munge parallel)
 
 say() { printf '\n== %s\n' "$*"; }
 fail() { printf 'error: %s\n' "$*" >&2; exit 1; }

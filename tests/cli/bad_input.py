@@ -1,6 +1,9 @@
 """Bad input: one clear message, exit code 2, nothing touched."""
 
+import json
 import os
+import random
+import shutil
 import subprocess
 import time
 import unittest
@@ -128,12 +131,12 @@ class StartFile(program.Case):
         self.copy_of_tiny_run(self.folder / "source")
         self.start = self.folder / "source" / "trajectory.h5"
 
-    def refused_start(self, start, *settings, saying):
+    def refused_start(self, start, *settings, saying, **options):
         arguments = [part for setting in ("prepare.method=file", f"prepare.file={start}", *settings)
                      for part in ("--set", setting)]
         out = self.folder / "out"
         with self.untouched(self.folder):
-            self.refused("run", self.tiny, "-o", out, *arguments, saying=saying)
+            self.refused("run", self.tiny, "-o", out, *arguments, saying=saying, **options)
         self.assertFalse(out.exists())
 
     def test_overlaps(self):
@@ -167,6 +170,161 @@ class StartFile(program.Case):
         for previous in path.parent.glob("checkpoint.previous.h5"):
             previous.unlink()
         self.refused_start(path, saying=["checkpoint.h5"])
+
+    def test_other_programs_files(self):
+        """What h5py can make of a trajectory: refused within seconds and 2 GB, and no other file is opened."""
+        other = self.folder / "other.h5"
+        shutil.copy(self.start, other)
+        others = h5py.File(other, "r")
+        species = others["particles/all/species"][:]
+        layout = h5py.VirtualLayout(shape=species.shape, dtype=species.dtype)
+        layout[:] = h5py.VirtualSource(other, "particles/all/species", shape=species.shape)
+        others.close()
+        good = self.start.read_bytes()
+        spoils = {
+            "a link to another file": lambda all: all.__setitem__(
+                "species", h5py.ExternalLink(str(other), "/particles/all/species")),
+            "data in another file": lambda all: all.create_dataset(
+                "species", (200,), "u1", external=[(str(other), 0, h5py.h5f.UNLIMITED)]),
+            "a virtual dataset": lambda all: all.create_virtual_dataset("species", layout),
+            "more disks than can be": lambda all: all.create_dataset("species", (2**40,), "u1", chunks=(2**20,)),
+            "disks without data": lambda all: all.create_dataset("species", (2**31,), "u1", chunks=(2**20,)),
+            "disks that are compressed": lambda all: all.create_dataset(
+                "species", (2**31,), "u1", chunks=(2**28,), compression="gzip", fillvalue=1),
+            "another compression": lambda all: all.create_dataset("species", data=species, compression="lzf"),
+            "texts": lambda all: all.create_dataset("species", data=[b"small"] * 200),
+            "records": lambda all: all.create_dataset("species", (200,), "u1,f8"),
+            "none": lambda all: None,
+        }
+        for name, spoil in spoils.items():
+            with self.subTest(name):
+                self.start.write_bytes(good)
+                with h5py.File(self.start, "r+") as file:
+                    del file["particles/all/species"]
+                    spoil(file["particles/all"])
+                self.refused_start(self.start, saying=["trajectory.h5"], timeout=30, memory=2 << 30)
+
+    def test_impossible_disks(self):
+        good = self.start.read_bytes()
+        for name, values in {"radius": -1.0, "mass": 0.0, "box/edges": 1e300, "position/value": 1e9,
+                             "velocity/value": float("inf"), "position/step": -1}.items():
+            with self.subTest(name):
+                self.start.write_bytes(good)
+                with h5py.File(self.start, "r+") as file:
+                    file["particles/all"][name][...] = values
+                self.refused_start(self.start, saying=[], timeout=30, memory=2 << 30)
+
+    def test_damage_anywhere(self):
+        """Read, or refused with the name of the file; never a crash, a hang, or much memory."""
+        good = self.start.read_bytes()
+        random_bytes = random.Random(1)
+        for _ in range(40):
+            damaged = bytearray(good)
+            for _ in range(random_bytes.choice([1, 4, 16])):
+                damaged[random_bytes.randrange(8192)] = random_bytes.choice([0, 1, 0x7f, 0xff])
+            self.start.write_bytes(damaged)
+            result = program.sandglass("prepare", self.tiny, "-o", self.folder / "state.h5", "--set",
+                                       "prepare.method=file", "--set", f"prepare.file={self.start}",
+                                       timeout=30, memory=4 << 30)
+            (self.folder / "state.h5").unlink(missing_ok=True)
+            self.assertIn(result.returncode, (program.DONE, program.BAD_INPUT), result.stderr)
+
+    def test_not_a_file(self):
+        pipe = self.folder / "pipe.h5"
+        os.mkfifo(pipe)
+        for path in (pipe, self.folder, "/dev/zero", "/dev/stdin"):
+            self.refused_start(path, saying=["not a file"], timeout=10)
+
+
+class NotAFile(program.Case):
+    """Pipes, devices and folders in the places of files: refused at once."""
+
+    def test_configuration(self):
+        pipe = self.folder / "pipe.toml"
+        os.mkfifo(pipe)
+        for path in (pipe, self.folder, "/dev/zero"):
+            self.refused("run", path, "-o", self.folder / "out", saying=["give a file"], timeout=10)
+        large = self.folder / "large.toml"
+        with open(large, "wb") as file:
+            file.truncate(100_000_000)
+        self.refused("run", large, "-o", self.folder / "out", saying=["longer"], timeout=10, memory=1 << 30)
+
+    def test_in_a_run(self):
+        for name in ("config.toml", "summary.json", "checkpoint.h5"):
+            with self.subTest(name):
+                out = self.folder / name.replace(".", "_")
+                self.copy_of_tiny_run(out)
+                if name == "checkpoint.h5":
+                    (out / "summary.json").unlink()
+                    (out / "checkpoint.previous.h5").unlink(missing_ok=True)
+                (out / name).unlink()
+                os.mkfifo(out / name)
+                self.refused("run", self.tiny, "-o", out, "--resume", saying=[name], timeout=10)
+
+
+class HostileTexts(program.Case):
+    def resumed(self, name, text, code):
+        out = self.folder / "out"
+        shutil.rmtree(out, ignore_errors=True)
+        self.copy_of_tiny_run(out)
+        (out / "report.html").unlink()
+        (out / name).write_text(text)
+        result = program.sandglass("run", self.tiny, "-o", out, "--resume", timeout=30, memory=2 << 30)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result, out
+
+    def test_summaries_of_a_finished_run(self):
+        for text in ("[" * 10**6, '{"a":' * 10**6, "", "null", "[]", "1e400", '{"seed": "x"}', '{"seed": -1}',
+                     '{"momentum": []}', '{"errors": [1]}', '{"stationary": 3}', "\x00", '{"collisions": 1e300}'):
+            with self.subTest(text[:20]):
+                result, _ = self.resumed("summary.json", text, program.BAD_INPUT)
+                self.assertIn("summary.json", result.stderr)
+
+    def test_configurations_of_a_run(self):
+        for text in ("a." * 10**5 + "a = 1", "[" + "a." * 10**5 + "a]", "x = " + "[" * 10**5, "x = " + "{a = " * 10**5,
+                     'x = "' + "\\u0000" * 10**5, "\x00"):
+            with self.subTest(text[:20]):
+                result, _ = self.resumed("config.toml", text, program.BAD_INPUT)
+                self.assertIn("config.toml", result.stderr)
+
+    def test_texts_of_a_summary_stay_texts_in_the_report(self):
+        evil = "</script><script>alert(1)</script><img src=x onerror=alert(2)>"
+        summary = json.loads((program.tiny_run() / "summary.json").read_text())
+        summary["warnings"] = summary["decisions"] = [evil]
+        summary["version"] = summary["state_hash"] = evil
+        summary["errors"] = {evil: 1.0}
+        _, out = self.resumed("summary.json", json.dumps(summary), program.DONE)
+        page = (out / "report.html").read_text()
+        for part in ("</script><script>alert", "<img src=x"):
+            self.assertNotIn(part, page)
+
+
+class HostileNames(program.Case):
+    def test_folders(self):
+        names = ["a'b\"c", "<script>alert(1)<_script>", "new\nline\rtab\t", "$(touch pwned);`touch pwned`|&*?", "%s%n{}{0}",
+                 "\x1b[31m", "--force", os.fsdecode(b"\xff\xfe\x80")]
+        for name in names:
+            with self.subTest(name):
+                result = program.sandglass("run", self.tiny, "-o", f"./{name}", cwd=self.folder)
+                self.assertEqual(result.returncode, program.DONE, result.stderr)
+                out = self.folder / name
+                json.loads((out / "summary.json").read_text())
+                self.assertNotIn("<script>alert", (out / "report.html").read_text())
+                again = program.sandglass("run", self.tiny, "-o", f"./{name}", "--resume", cwd=self.folder)
+                self.assertEqual(again.returncode, program.DONE, again.stderr)
+        self.assertFalse((self.folder / "pwned").exists())
+        self.assertEqual(len(list(self.folder.iterdir())), len(names) + 1)
+
+    def test_start_file(self):
+        """The path stands in config.toml and in the report."""
+        source = self.folder / "a\n\"b\"<"
+        source.mkdir()
+        start = source / "script><script>alert(1)<!--'\\.h5"
+        shutil.copy(program.tiny_run() / "checkpoint.h5", start)
+        out = self.folder / "out"
+        self.run_ok("run", self.tiny, "-o", out, "--set", "prepare.method=file", "--set", f"prepare.file={start}")
+        self.assertNotIn("<script>alert", (out / "report.html").read_text())
+        self.run_ok("run", out / "config.toml", "-o", self.folder / "again")
 
 
 if __name__ == "__main__":

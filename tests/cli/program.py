@@ -6,6 +6,7 @@ import functools
 import hashlib
 import os
 import pathlib
+import resource
 import shutil
 import subprocess
 import tempfile
@@ -35,9 +36,11 @@ trajectory_frames = 3
 DONE, FAILURE, BAD_INPUT = 0, 1, 2
 
 
-def sandglass(*arguments, cwd=None, timeout=120):
-    """Runs the program to its end; the result has returncode, stdout, stderr."""
+def sandglass(*arguments, cwd=None, timeout=120, memory=None):
+    """Runs the program to its end, with at most `memory` bytes; the result has returncode, stdout, stderr."""
+    limit = memory and (lambda: resource.setrlimit(resource.RLIMIT_AS, (memory, memory)))
     return subprocess.run([SANDGLASS, *map(str, arguments)], cwd=cwd, timeout=timeout, text=True,
+                          errors="surrogateescape", preexec_fn=limit,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 

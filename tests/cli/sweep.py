@@ -240,6 +240,17 @@ class Point(Campaign):
         self.run_ok("run", "--manifest", manifest, "--index", 1)
         self.assertIn("resumed", (campaign / self.rows(campaign)[0]["path"] / "run.log").read_text())
 
+    def test_points_share_the_wall_time(self):
+        campaign = self.init(LONGER)
+        turns = 0
+        while (done := program.sandglass("run", "--manifest", campaign / "manifest.tsv", "--index", 1, "--count", 4,
+                                         "--max-walltime", 1)).returncode != program.DONE:
+            self.assertEqual(done.returncode, 75, done.stdout + done.stderr)
+            turns += 1
+            self.assertLess(turns, 100, "it gets no further")
+        self.assertGreater(turns, 0)
+        self.assertEqual(self.states(campaign), 4 * ["done"])
+
     def test_points_and_manifests_that_are_not(self):
         campaign = self.init()
         manifest = campaign / "manifest.tsv"

@@ -20,6 +20,7 @@ extern "C" void note_stop_signal(int signal) {
 
 void catch_stop_signals() {
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, note_stop_signal);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the user's limit fails to be written, like one on a full disk
 }
 
 bool stop_signal_came() { return stop_signal != 0; }

@@ -6,6 +6,7 @@
 
 #include "sandglass/core/state.h"
 #include "sandglass/dynamics/event.h"
+#include "sandglass/dynamics/inspection.h"
 #include "sandglass/dynamics/simulation.h"
 
 namespace sandglass {
@@ -34,6 +35,9 @@ class Engine {
 
   /// Does every event at or before `end`, a time within the epoch, and sets state.now to it.
   virtual void run(double end) = 0;
+
+  /// Looks for what cannot be between two events. Changes nothing.
+  virtual Inspection inspect() = 0;
 
   virtual void make_frame(double* x, double* y, double* vx, double* vy) const = 0;
 

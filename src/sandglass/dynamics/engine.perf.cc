@@ -104,6 +104,12 @@ void add_all(const InstructionSet& set) {
     engine->load(spatial_order(loaded).data());
     set.search(state, *engine);
   });
+  add(set.name + "/inspect_10000", [set](benchmark::State& state) {
+    State loaded = fluid();
+    const std::unique_ptr<Engine> engine(set.make_engine(loaded, {}));
+    engine->load(spatial_order(loaded).data());
+    for (auto iteration : state) benchmark::DoNotOptimize(engine->inspect());
+  });
 }
 
 [[maybe_unused]] const bool added = [] {

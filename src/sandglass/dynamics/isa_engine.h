@@ -1,6 +1,6 @@
 // The engine of one instruction set: its tables and what it does with them. engine.cc has the loop over events,
 // prediction.cc what comes next for a disk, partner.cc the search for the partner of a kick, loading.cc the way from
-// and to a State. All of them are compiled once per instruction set.
+// and to a State, inspection.cc the self-check. All of them are compiled once per instruction set.
 #pragma once
 
 #include <cstdint>
@@ -31,10 +31,12 @@ class IsaEngine final : public Engine {
   void forget_what_comes() override;
   void store(Disk* disks) const override;
   void run(double end) override;
+  Inspection inspect() override;
   void make_frame(double* x, double* y, double* vx, double* vy) const override;
 
  private:
   friend struct PredictionPerf;  // measures the search (prediction.perf.cc)
+  friend struct FaultInjection;  // damages the tables, to see that it is found (watch.test.cc)
 
   struct Image {
     std::int32_t x, y;
@@ -85,6 +87,7 @@ class IsaEngine final : public Engine {
   [[nodiscard]] Smallest smallest_gap(const Record& disk, const std::uint32_t* list, double t) const;
   std::uint32_t partner_within_reach(std::uint32_t i, double t, const Kick& kick);
 
+  [[nodiscard]] Fault fault_of(std::uint32_t i) const;
   [[nodiscard]] bool before(std::uint32_t a, std::uint32_t b) const;
   void log_event(EventKind kind, double t, std::uint32_t i, std::uint32_t j) const;
   [[nodiscard]] double mean_lead() const;

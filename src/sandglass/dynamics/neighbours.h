@@ -81,6 +81,16 @@ class Neighbours {
     grid_.place(slot, at, records[slot].species);
   }
 
+  /// Whether the list of a disk, whose list centre is `at`, names everybody whose list centre is within range, and
+  /// nobody else.
+  [[nodiscard]] bool complete(std::uint32_t slot, FixedPoint at, const Record& disk) {
+    const Grid::Slots found = find(at, disk);  // the disk itself is among them
+    if (found.count != disk.neighbour_count + 1u || found.count > stride_ + 1) return false;
+    for (std::uint32_t n = 0; n < found.count; ++n)
+      if (found.first[n] != slot && !holds(list(slot), disk.neighbour_count, found.first[n])) return false;
+    return true;
+  }
+
   /// Brings what renew will read nearer to the processor.
   [[gnu::always_inline]] void fetch(FixedPoint at, const Record& disk) const {
     grid_.fetch(at, range(disk.radius, big));

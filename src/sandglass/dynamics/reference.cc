@@ -104,4 +104,63 @@ void Reference::perform(Event event) {
   if (log_) log_->push_back(event);
 }
 
+std::string Reference::follow(const std::vector<Event>& events, std::uint64_t epoch, double now) {
+  auto next_epoch = [this] {
+    state_.now = state_.epoch_length;
+    pass_epoch(state_);
+  };
+  for (const Event& event : events) {
+    if (event.time < state_.now && state_.epoch < epoch) next_epoch();  // times are counted anew
+    std::string wrong = objection(event);
+    if (wrong.empty()) {
+      state_.now = event.time;
+      perform(event);
+      continue;
+    }
+    return "at time " + std::to_string(static_cast<double>(state_.epoch) * state_.epoch_length + event.time) + " " +
+           wrong;
+  }
+  while (state_.epoch < epoch) next_epoch();
+  state_.now = now;
+  return {};
+}
+
+/// What is wrong with an event as the next one; empty if nothing is.
+std::string Reference::objection(const Event& event) const {
+  const Box box(state_.box_length, state_.mixture);
+  const std::vector<Disk>& disks = state_.disks;
+  const bool pair = event.kind == EventKind::contact;
+  auto named = [&](const std::string& what) {
+    return what + " (disk " + std::to_string(event.first) +
+           (event.second == no_disk ? ")" : " and disk " + std::to_string(event.second) + ")");
+  };
+  if (event.time < state_.now) return named("an event comes after a later one");
+  if (event.first >= disks.size() || (pair && event.second >= disks.size())) return named("an event of no disk");
+  const Disk& a = disks[event.first];
+  auto contact_with = [&](const Disk& b) {
+    return state_.mixture.radius[a.species] + state_.mixture.radius[b.species];
+  };
+  double due = 0;
+  switch (event.kind) {
+    case EventKind::contact:
+      due = contact_time(a, disks[event.second], contact_with(disks[event.second]), box);
+      break;
+    case EventKind::kick:
+      due = a.next_kick;
+      break;
+    default:
+      due = transit_time(a, box);
+  }
+  if (due != event.time) return named("an event takes place at another time than the records say");
+  if (event.kind == EventKind::kick && state_.drive.kind == DriveKind::pair) {
+    const Kick kick = Kick::draw(state_.seed, event.first, a.kick_count + 1);
+    if (partner_of(event.first, event.time, kick) != event.second) return named("a kick has the wrong partner");
+  }
+  for (std::uint32_t k = 0; k < disks.size(); ++k)
+    if (k != event.first &&
+        surface_gap(a, disks[k], contact_with(disks[k]), event.time, box) < -1e-9 * contact_with(disks[k]))
+      return named("an event was missed: disk " + std::to_string(k) + " overlaps the first disk of an event");
+  return {};
+}
+
 }  // namespace sandglass

@@ -1,6 +1,7 @@
 // The oracle: the same dynamics in the most obvious way.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "sandglass/core/frame.h"
@@ -18,6 +19,10 @@ class Reference {
 
   void run_until(double end);
 
+  /// Does the events that an engine says it has done, up to `now` in epoch `epoch`, if each is what the rules ask for
+  /// at that time and nobody overlaps the disks concerned; returns what is wrong, or nothing. O(N) per event.
+  [[nodiscard]] std::string follow(const std::vector<Event>& events, std::uint64_t epoch, double now);
+
   [[nodiscard]] double time() const { return state_.time(); }
   [[nodiscard]] const Tally& tally() const { return state_.tally; }
   [[nodiscard]] std::size_t size() const { return state_.size(); }
@@ -27,6 +32,7 @@ class Reference {
 
  private:
   [[nodiscard]] Event next_event() const;
+  [[nodiscard]] std::string objection(const Event& event) const;
   void perform(Event event);
   [[nodiscard]] std::uint32_t partner_of(std::uint32_t i, double t, const Kick& kick) const;
 

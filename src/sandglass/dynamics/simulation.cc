@@ -105,6 +105,7 @@ void Simulation::run_until(double end) {
 double Simulation::time() const { return run_->state.time(); }
 const Tally& Simulation::tally() const { return run_->state.tally; }
 std::size_t Simulation::size() const { return run_->size; }
+bool Simulation::conserves_momentum() const { return run_->state.drive.kind != DriveKind::single; }
 
 State Simulation::state() const& {
   State copy = run_->state;
@@ -123,6 +124,8 @@ void Simulation::make_frame(Frame& frame) const {
   frame.collisions_per_disk = 2.0 * static_cast<double>(tally().collisions()) / static_cast<double>(size());
   run_->engine->make_frame(frame.x.data(), frame.y.data(), frame.vx.data(), frame.vy.data());
 }
+
+Inspection Simulation::inspect() const { return run_->engine->inspect(); }
 
 const char* Simulation::instruction_set() { return choose_instruction_set().name; }
 

@@ -8,6 +8,7 @@
 #include "sandglass/core/frame.h"
 #include "sandglass/core/state.h"
 #include "sandglass/dynamics/event.h"
+#include "sandglass/dynamics/inspection.h"
 
 namespace sandglass {
 
@@ -33,12 +34,16 @@ class Simulation {
   [[nodiscard]] double time() const;
   [[nodiscard]] const Tally& tally() const;
   [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] bool conserves_momentum() const;  ///< single kicks do not
 
   /// A copy of the run at this moment; a new Simulation made from it goes on with the same bits. A Simulation that is
   /// no longer needed (std::move) frees its tables first.
   [[nodiscard]] State state() const&;
   [[nodiscard]] State state() &&;
   void make_frame(Frame& frame) const;
+
+  /// What can be seen to be wrong with the engine's tables, and sums over the records, at this moment. O(N).
+  [[nodiscard]] Inspection inspect() const;
 
   /// From now on appends every physical event to `log` (for tests; nullptr stops it).
   void set_event_log(std::vector<Event>* log);

@@ -64,13 +64,15 @@ class Descriptor {
 
 }  // namespace
 
+void sync_file(const std::filesystem::path& path) { Descriptor(path, O_RDONLY | O_CLOEXEC).sync(); }
+
 void replace_file(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write,
                   const std::function<void()>& before_rename) {
   const std::filesystem::path temporary = path.string() + ".partial";
   std::error_code error;
   try {
     write(temporary);
-    Descriptor(temporary, O_RDONLY | O_CLOEXEC).sync();
+    sync_file(temporary);
     if (before_rename) before_rename();
     std::filesystem::rename(temporary, path, error);
     if (error) fail_to_write(path, error.value());
@@ -90,8 +92,9 @@ void write_whole(const std::filesystem::path& path, std::string_view contents) {
 
 std::string read_whole(const std::filesystem::path& path, std::size_t limit) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    throw InputError(fmt::format("{} is a folder; give a file", path.string()));
+  // A pipe or a device could keep us waiting for ever.
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    throw InputError(fmt::format("{} is a folder, a pipe or a device; give a file", path.string()));
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) {

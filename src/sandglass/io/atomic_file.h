@@ -18,6 +18,9 @@ void write_whole(const std::filesystem::path& path, std::string_view contents);
 void replace_file(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write,
                   const std::function<void()>& before_rename = {});
 
+/// What has been written to the file is on the disk, not only in memory. Throws RunError.
+void sync_file(const std::filesystem::path& path);
+
 /// Throws what `errno` = `code` means for a file that is to be written: InputError where the user can choose another
 /// place, RunError for a full or failing disk.
 [[noreturn]] void fail_to_write(const std::filesystem::path& path, int code);

@@ -79,6 +79,10 @@ std::string read_config_file(const std::filesystem::path& file) {
 }
 
 toml::table parse_toml(std::string_view text, const std::string& name) {
+  // A key a.a.a... makes as many tables, one in the other, as it has dots, and the library frees them by recursion.
+  constexpr std::ptrdiff_t most_dots = 4096;
+  if (std::count(text.begin(), text.end(), '.') > most_dots)
+    throw InputError(fmt::format("{}: more than {} dots: this is not the file meant", name, most_dots));
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {

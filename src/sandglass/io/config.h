@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sandglass/core/state.h"
+#include "sandglass/dynamics/vigilance.h"
 
 namespace sandglass {
 
@@ -44,6 +45,8 @@ struct Config {
     double collisions = 10000;  ///< collisions per disk measured
     std::uint64_t intervals = 10;
     std::uint64_t threads = 1;
+    double max_walltime_seconds = 0;  ///< 0: no limit
+    Vigilance self_check = Vigilance::sampled;
   } run;
   struct Observe {
     std::vector<double> wavenumbers{0.5, 3.0};  ///< in 1 / R_s

@@ -3,7 +3,10 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <rapidcheck.h>
+#include <sys/stat.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "sandglass/core/errors.h"
@@ -93,6 +96,80 @@ TEST_CASE("what is written reads back to the same bits") {
   }));
 }
 
+TEST_CASE("assignments say the same in any order, and the last one of a key counts") {
+  CHECK(rc::check("order of assignments", [] {
+    const Config config = any_config("start.h5");
+    // In the shape of "key=value", from the complete configuration: all keys, so that any order is a whole one.
+    std::vector<std::string> assignments;
+    for (const Key& key : config_table()) assignments.push_back(fmt::format("{}={}", key.name, key.write(config, key)));
+    std::vector<std::string> shuffled = assignments;
+    for (std::size_t i = shuffled.size(); i > 1; --i)
+      std::swap(shuffled[i - 1], shuffled[*rc::gen::inRange<std::size_t>(0, i)]);
+    const Key& earlier = config_table()[*rc::gen::inRange<std::size_t>(0, config_table().size())];
+    shuffled.insert(shuffled.begin(), fmt::format("{}={}", earlier.name, earlier.write(Config{}, earlier)));
+    const std::string expected = config_to_toml(from_text("", assignments));
+    RC_ASSERT(config_to_toml(from_text("", shuffled)) == expected);
+    // Assigning a file's text is as reading it, but for what its paths are relative to.
+    if (config.prepare.method != PrepareMethod::file)
+      RC_ASSERT(config_to_toml(from_text(config_to_toml(config))) == expected);
+  }));
+}
+
+TEST_CASE("configurations differ in the keys in which they were made to differ, either way round") {
+  CHECK(rc::check("differing keys", [] {
+    const Config a = any_config("start.h5"), b = any_config("start.h5");
+    const auto names = differing_keys(a, b);
+    RC_ASSERT(names == differing_keys(b, a));
+    RC_ASSERT(differing_keys(a, a).empty());
+    const std::string toml_a = config_to_toml(a), toml_b = config_to_toml(b);
+    for (const Key& key : config_table()) {
+      const bool differs = key.write(a, key) != key.write(b, key);
+      const bool named = std::find(names.begin(), names.end(), key.name) != names.end();
+      RC_ASSERT(named == (differs && key.physics));
+    }
+    if (toml_a == toml_b) RC_ASSERT(names.empty());
+  }));
+}
+
+TEST_CASE("a number at the end of its range is accepted, the next one beyond is not") {
+  for (const Key& key : config_table()) {
+    const bool whole = key.type == "integer", list = key.type == "array of numbers";
+    if (!whole && !list && !key.type.starts_with("number")) continue;
+    CAPTURE(key.name);
+    // (What another key limits further is refused by another message.)
+    const auto out_of_range = [&](const std::string& number) {
+      const std::string value = list ? "[" + number + "]" : number;
+      return contains(message_of<InputError>([&] { from_text("", {fmt::format("{}={}", key.name, value)}); }),
+                      "out of range");
+    };
+    const auto text = [&](double x) {
+      return fmt::format(whole ? fmt::runtime("{:.0f}") : fmt::runtime("{:.17e}"), x);
+    };
+    const auto beside = [&](double x, double to) { return whole ? x + std::copysign(1, to) : std::nextafter(x, to); };
+    const auto [low, high, open] = key.range;
+    CHECK(out_of_range(text(open ? low : beside(low, -Range::infinity))));
+    CHECK(!out_of_range(text(open ? beside(low, Range::infinity) : low)));
+    const bool can_exceed = high < (whole ? 0x1p53 : Range::infinity);  // 2^63 is also the end of TOML's integers
+    if (can_exceed) CHECK(out_of_range(text(beside(high, Range::infinity))));
+    CHECK(!out_of_range(text(std::min(high, 0x1p53))));
+    for (const char* never : {"nan", "inf", "-inf", "-1e308"}) CHECK(out_of_range(never));
+  }
+}
+
+TEST_CASE("any unknown key is refused by its name") {
+  CHECK(rc::check("unknown keys", [] {
+    const auto letters = *rc::gen::nonEmpty(rc::gen::container<std::string>(rc::gen::inRange('a', 'z')));
+    for (const std::string& name : {letters, "run." + letters, letters + ".seed", "run.seed." + letters}) {
+      const bool known =
+          std::any_of(config_table().begin(), config_table().end(), [&](const Key& key) { return key.name == name; });
+      if (known) continue;
+      RC_ASSERT(contains(message_of<InputError>([&] { from_text("", {name + "=1"}); }), "unknown key " + name));
+      // In a file "run.seed.x" is a table in the place of a number.
+      RC_ASSERT(!message_of<InputError>([&] { from_text(name + " = 1"); }).empty());
+    }
+  }));
+}
+
 TEST_CASE("numbers may be written in any way that means the same") {
   CHECK(from_text("[system]\nparticles = 40_000").system.particles == 40000);
   CHECK(from_text("[system]\nparticles = 4e4").system.particles == 40000);
@@ -160,6 +237,11 @@ TEST_CASE("what no single key can tell") {
   CHECK(refused("output.trajectory_frames = 1", {}, {"0 (no file) or at least 2"}));
 }
 
+TEST_CASE("wavenumbers that the box holds too many waves of") {
+  CHECK(refused("observe.wavenumbers = [1, 1e4]", {"system.particles=4000000"}, {"observe.wavenumbers", "at most"}));
+  CHECK(from_text("observe.wavenumbers = [1, 50]", {"system.particles=4000000"}).observe.wavenumbers[1] == 50);
+}
+
 TEST_CASE("the least number of disks that is named is accepted, the next lower one is not") {
   const std::string message = message_of<InputError>([] { from_text("system.particles = 2"); });
   const std::size_t at = message.find("at least ");
@@ -192,6 +274,16 @@ TEST_CASE("files that cannot be read or parsed") {
   CHECK(contains(message(folder / "long.toml"), "longer"));
   spill(folder / "deep.toml", std::string("x = ").append(100000, '['));
   CHECK(contains(message(folder / "deep.toml"), "not TOML"));
+  // A dotted key nests without a limit of the library's, which frees what it made by recursion.
+  std::string dotted;
+  for (int i = 0; i < 200000; ++i) dotted += "a.";
+  spill(folder / "dotted.toml", dotted + "a = 1");
+  CHECK(contains(message(folder / "dotted.toml"), "dots"));
+  spill(folder / "dotted.toml", "[" + dotted + "a]");
+  CHECK(contains(message(folder / "dotted.toml"), "dots"));
+  REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
+  CHECK(contains(message(folder / "pipe"), "pipe"));
+  CHECK(contains(message("/dev/zero"), "device"));
 }
 
 TEST_CASE("any bytes are read or refused, never worse") {
@@ -206,6 +298,14 @@ TEST_CASE("any bytes are read or refused, never worse") {
     attempt("[system]\nparticles = " + text, {});
     attempt("", {"prepare.file=" + text});
     attempt("", {text});
+    // Bytes that look more like a configuration.
+    std::string near = config_to_toml(Config{});
+    for (auto edits = *rc::gen::inRange(1, 6); edits > 0; --edits) {
+      const auto at = *rc::gen::inRange<std::size_t>(0, near.size());
+      near.replace(at, *rc::gen::inRange<std::size_t>(0, 3),
+                   *rc::gen::element<std::string>("=", "\"", "[", "-", "9e9", "\n", "nan", "\xff", text));
+    }
+    attempt(near, {});
   }));
 }
 

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "sandglass/core/errors.h"
 #include "sandglass/io/config.h"
+#include "sandglass/observe/scattering.h"
 #include "sandglass/prepare/insert.h"
 
 namespace sandglass {
@@ -101,12 +103,24 @@ void check_reach(const Config& config) {
                   config.drive.reach, length, most));
 }
 
+void check_wavenumbers(const Config& config) {
+  const double most = most_waves * 2 * std::numbers::pi / box_length(config.system, config.system.particles);
+  for (const double wavenumber : config.observe.wavenumbers) {
+    if (wavenumber <= most) continue;
+    throw InputError(fmt::format(
+        "observe.wavenumbers: {} is too large for a box of so many wavelengths: at most {}, in 1/R_s, can be "
+        "evaluated with this number of disks",
+        wavenumber, std::floor(most * 1000) / 1000));
+  }
+}
+
 }  // namespace
 
 void check_config(const Config& config) {
   check_system(config.system);
   check_prepare(config);
   check_reach(config);
+  check_wavenumbers(config);
   if (config.collision.restitution == 1 && config.drive.kind != DriveKind::none) {
     throw InputError(
         "collision.restitution = 1 with driving has no steady state: nothing takes out the energy that kicks put in; "

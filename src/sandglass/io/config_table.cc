@@ -265,6 +265,18 @@ const std::vector<Key>& config_table() {
                                       .description = "Threads; the results do not depend on it.",
                                       .range = {1, 1024},
                                       .physics = false}),
+      key<&C::run, &C::Run::max_walltime_seconds>(
+          {.name = "run.max_walltime_seconds",
+           .unit = "s",
+           .description = "Stop at a checkpoint after this wall-clock time, to be resumed (exit code 75); 0: never.",
+           .range = {0, 1e9},
+           .physics = false}),
+      key<&C::run, &C::Run::self_check>(
+          {.name = "run.self_check",
+           .description = "Invariants of the running engine are `sampled` (under 1 % of the time), or `every_event` is "
+                          "done a second time by the rule (slow: O(N) each).",
+           .words = {"sampled", "every_event"},
+           .physics = false}),
       key<&C::observe, &C::Observe::wavenumbers>(
           {.name = "observe.wavenumbers",
            .unit = "1/R_s",

@@ -16,6 +16,8 @@ void start_library() {
     H5dont_atexit();  // its last clean-up crashes after a write that failed; files are closed by their owners
     H5open();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    H5Lunregister(H5L_TYPE_EXTERNAL);  // no file makes us open another one
+    H5PLset_loading_state(0);          // or load the code of a filter
     return true;
   }();
   (void)started;
@@ -47,15 +49,37 @@ std::size_t elements(const Shape& shape) {
   return product;
 }
 
+namespace {
+
+/// Refuses data that stand in other files (nothing has been opened yet) and filters other than those that h5py offers
+/// everywhere, each at most once: two compressions, one upon the other, would make terabytes out of a small file.
+void check_storage(const std::filesystem::path& path, const std::string& object, hid_t dataset) {
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  const H5D_layout_t layout = H5Pget_layout(creation);
+  const bool inside = layout == H5D_COMPACT || layout == H5D_CONTIGUOUS || layout == H5D_CHUNKED;
+  if (!inside || H5Pget_external_count(creation) != 0) fail_to_read(path, object, "its data are not in the file");
+  std::vector<H5Z_filter_t> known{H5Z_FILTER_DEFLATE, H5Z_FILTER_SHUFFLE, H5Z_FILTER_FLETCHER32};
+  const int filters = H5Pget_nfilters(creation);
+  for (unsigned i = 0; static_cast<int>(i) < filters; ++i) {
+    unsigned flags = 0;
+    std::size_t values = 0;
+    const H5Z_filter_t filter = H5Pget_filter2(creation, i, &flags, &values, nullptr, 0, nullptr, nullptr);
+    if (std::erase(known, filter) == 0) fail_to_read(path, object, "its compression is not gzip");
+  }
+}
+
+}  // namespace
+
 Opened open_dataset(const std::filesystem::path& path, hid_t file, const std::string& object) {
-  const hid_t dataset = H5Dopen2(file, object.c_str(), H5P_DEFAULT);
+  Handle dataset(H5Dopen2(file, object.c_str(), H5P_DEFAULT), H5Dclose);
   if (dataset < 0) fail_to_read(path, object, "there is no such dataset");
-  const hid_t space = H5Dget_space(dataset);
-  Opened opened{{dataset, H5Dclose}, {space, H5Sclose}, {}};
+  check_storage(path, object, dataset);
+  Handle space(H5Dget_space(dataset), H5Sclose);
   const int rank = H5Sget_simple_extent_ndims(space);
   if (rank < 0 || H5Sget_simple_extent_type(space) == H5S_NULL) fail_to_read(path, object, "it has no shape");
+  Opened opened{std::move(dataset), std::move(space), {}};
   std::array<hsize_t, H5S_MAX_RANK> sizes{};
-  H5Sget_simple_extent_dims(space, sizes.data(), nullptr);
+  H5Sget_simple_extent_dims(opened.space, sizes.data(), nullptr);
   opened.shape.assign(sizes.begin(), sizes.begin() + rank);
   return opened;
 }
@@ -100,11 +124,30 @@ void check_content(const std::filesystem::path& path, hid_t file, const std::str
   hsize_t file_bytes = 0;
   H5Fget_filesize(file, &file_bytes);
   const Handle creation(H5Dget_create_plist(opened.dataset), H5Pclose);
-  const hsize_t compression = H5Pget_layout(creation) == H5D_CHUNKED ? 1100 : 1;  // deflate shrinks at most 1032 times
+  const bool chunked = H5Pget_layout(creation) == H5D_CHUNKED;
+  const hsize_t compression = chunked && H5Pget_nfilters(creation) > 0 ? 1100 : 1;  // deflate: at most 1032 times
   const hsize_t stored = std::min(H5Dget_storage_size(opened.dataset), file_bytes);
-  if (wanted > compression * stored / H5Tget_size(type)) {
+  hsize_t least = wanted;
+  if (chunked) {
+    std::vector<hsize_t> sizes(opened.shape.size());
+    H5Pget_chunk(creation, static_cast<int>(sizes.size()), sizes.data());
+    least = std::max<hsize_t>(least, elements(Shape(sizes.begin(), sizes.end())));
+  }
+  if (least > compression * stored / H5Tget_size(type)) {
     fail_to_read(path, object, "it claims more data than the file holds");
   }
+}
+
+/// The transfer of numbers that must arrive as they are: the library would make the nearest possible one of a number
+/// that does not fit the type wanted, such as 0 of a negative count.
+Handle exact_transfer() {
+  Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
+  const auto refuse = [](H5T_conv_except_t kind, hid_t, hid_t, void*, void*, void*) {
+    const bool fits = kind != H5T_CONV_EXCEPT_RANGE_HI && kind != H5T_CONV_EXCEPT_RANGE_LOW;
+    return fits ? H5T_CONV_UNHANDLED : H5T_CONV_ABORT;
+  };
+  H5Pset_type_conv_cb(transfer, refuse, nullptr);
+  return transfer;
 }
 
 std::string without_padding(std::string text) {
@@ -145,7 +188,7 @@ std::vector<T> Hdf5File::read(const std::string& object, const Shape& expected) 
   if (count == 0) return {};
   check_content<T>(path_, id_, object, opened, count);
   std::vector<T> values(count);
-  if (H5Dread(opened.dataset, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+  if (H5Dread(opened.dataset, memory_type<T>(), H5S_ALL, H5S_ALL, exact_transfer(), values.data()) < 0) {
     fail_to_read(path_, object, "its data cannot be read");
   }
   return values;
@@ -159,7 +202,7 @@ std::vector<T> Hdf5File::read_row(const std::string& object, std::size_t row, co
   const std::size_t count = elements(expected);
   check_content<T>(path_, id_, object, opened, count);
   std::vector<T> values(count);
-  if (H5Dread(opened.dataset, memory_type<T>(), memory, opened.space, H5P_DEFAULT, values.data()) < 0) {
+  if (H5Dread(opened.dataset, memory_type<T>(), memory, opened.space, exact_transfer(), values.data()) < 0) {
     fail_to_read(path_, object, "its data cannot be read");
   }
   return values;

@@ -95,7 +95,9 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path, std::size_t user_bl
 Hdf5File Hdf5File::open_to_write(const std::filesystem::path& path) {
   start_library();
   const Handle access = make_access();
-  const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(path, error);
+  const hid_t id = is_file ? H5Fopen(path.c_str(), H5F_ACC_RDWR, access) : H5I_INVALID_HID;
   if (id < 0)
     throw RunError(fmt::format("cannot open {} to write into it: it was removed, damaged or protected", path.string()));
   return {path, id, true};

@@ -88,15 +88,24 @@ void RunFolder::refuse_if_held() const {
 
 bool RunFolder::holds_run() const {
   std::error_code error;
-  return std::filesystem::exists(config(), error);
+  return std::filesystem::exists(config(), error) || has_checkpoint(checkpoint());
 }
 
 void RunFolder::begin() {
   begun_ = true;
   if (mode_ != FolderMode::force) return;
   // config.toml goes last: until then the folder is known as a run.
-  const std::array files{summary(), observables(), trajectory(), checkpoint(), previous_checkpoint(checkpoint()),
-                         report(),  log(),         config()};
+  const std::array files{start(),
+                         diagnostic(),
+                         diagnostic_state(),
+                         summary(),
+                         observables(),
+                         trajectory(),
+                         checkpoint(),
+                         previous_checkpoint(checkpoint()),
+                         report(),
+                         log(),
+                         config()};
   for (const auto& file : files) {
     std::error_code error;
     std::filesystem::remove(file, error);

@@ -27,7 +27,7 @@ class RunFolder {
   void begin();
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] bool holds_run() const;  ///< there is a config.toml
+  [[nodiscard]] bool holds_run() const;  ///< there is a config.toml or a checkpoint
 
   [[nodiscard]] std::filesystem::path config() const { return path_ / "config.toml"; }
   [[nodiscard]] std::filesystem::path summary() const { return path_ / "summary.json"; }
@@ -35,6 +35,10 @@ class RunFolder {
   [[nodiscard]] std::filesystem::path trajectory() const { return path_ / "trajectory.h5"; }
   [[nodiscard]] std::filesystem::path checkpoint() const { return path_ / "checkpoint.h5"; }
   [[nodiscard]] std::filesystem::path report() const { return path_ / "report.html"; }
+  [[nodiscard]] std::filesystem::path start() const { return path_ / "start.h5"; }  ///< until the run is finished
+  /// What a run leaves that its self-check has stopped.
+  [[nodiscard]] std::filesystem::path diagnostic() const { return path_ / "diagnostic.txt"; }
+  [[nodiscard]] std::filesystem::path diagnostic_state() const { return path_ / "diagnostic.h5"; }
   [[nodiscard]] std::filesystem::path log() const { return path_ / "run.log"; }
 
  private:

@@ -23,7 +23,7 @@ std::uint64_t mix(std::uint64_t sum, std::uint64_t word) {
 
 /// The seal that belongs to what follows the first block.
 std::string compute_seal(std::ifstream& file) {
-  std::vector<char> block(1 << 20);
+  std::vector<char> block(1 << 16);
   std::uint64_t sum = 0, length = 0;
   file.seekg(seal_size);
   while (file) {
@@ -55,6 +55,8 @@ void seal_file(const std::filesystem::path& path) {
 }
 
 bool has_seal(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe would keep us waiting
   std::ifstream file(path, std::ios::binary);
   std::string start(name.size(), '\0');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
@@ -63,8 +65,9 @@ bool has_seal(const std::filesystem::path& path) {
 
 void check_seal(const std::filesystem::path& path) {
   std::error_code error;
-  std::ifstream file(path, std::ios::binary);
-  if (!file || !std::filesystem::is_regular_file(path, error)) {
+  std::ifstream file;
+  if (std::filesystem::is_regular_file(path, error)) file.open(path, std::ios::binary);
+  if (!file.is_open()) {
     throw InputError(fmt::format("{} is not there or cannot be read: check the path", path.string()));
   }
   std::string found(seal_size, '\0');

@@ -9,6 +9,10 @@
 namespace sandglass {
 namespace {
 
+// No run comes near these; from above, a counter could overflow in one.
+constexpr std::uint64_t most_events = std::uint64_t{1} << 61, most_epochs = std::uint64_t{1} << 52;
+constexpr std::int32_t most_images = 1 << 30;
+
 bool positive(double value) { return std::isfinite(value) && value > 0; }
 bool not_negative(double value) { return std::isfinite(value) && value >= 0; }
 
@@ -23,6 +27,9 @@ void check_disk(const State& state, std::size_t id, const std::string& origin) {
   const auto in_box = [&](double c) { return c >= 0 && c <= state.box_length; };
   if (!in_box(disk.x) || !in_box(disk.y)) fail(fmt::format("its centre at ({}, {}), outside the box", disk.x, disk.y));
   if (!std::isfinite(disk.vx) || !std::isfinite(disk.vy)) fail("a velocity that is not a number");
+  const auto few = [](std::int32_t images) { return -most_images <= images && images <= most_images; };
+  if (!few(disk.image_x) || !few(disk.image_y)) fail("crossed the box more often than can be counted");
+  if (disk.kick_count > most_events) fail("been kicked more often than can be counted");
   if (!std::isfinite(disk.time) || disk.time > state.now)
     fail(fmt::format("a record of time {}, in the future", disk.time));
   if (!(disk.last_contact <= state.now)) fail(fmt::format("its last contact at {}, in the future", disk.last_contact));
@@ -47,7 +54,11 @@ void check_state(const State& state, const std::string& origin) {
           "its drive has a value that is negative or not a number");
   require(not_negative(state.epoch_length) && not_negative(state.now) && not_negative(state.time()), origin,
           "its time is negative or not a number");
-  require(state.tally.elastic_contacts <= state.tally.collisions(), origin, "its counts contradict each other");
+  require(state.epoch <= most_epochs, origin, fmt::format("it counts {} epochs", state.epoch));
+  const Tally& tally = state.tally;
+  for (const auto count : {tally.contacts[0], tally.contacts[1], tally.contacts[2], tally.kicks})
+    require(count <= most_events, origin, fmt::format("it counts {} events of a kind", count));
+  require(tally.elastic_contacts <= tally.collisions(), origin, "its counts contradict each other");
   require(state.size() >= 2 && state.size() <= most_disks, origin, fmt::format("it has {} disks", state.size()));
   for (std::size_t id = 0; id < state.size(); ++id) check_disk(state, id, origin);
 }

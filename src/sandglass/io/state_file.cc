@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "sandglass/core/errors.h"
+#include "sandglass/io/apart.h"
 #include "sandglass/io/atomic_file.h"
 #include "sandglass/io/hdf5.h"
 #include "sandglass/io/seal.h"
@@ -159,7 +160,7 @@ State read_state(const std::filesystem::path& path) {
 
 State read_start_file(const std::filesystem::path& path) {
   if (has_seal(path)) return read_state(path);
-  return read_last_frame(path);
+  return read_apart(path, [&] { return read_last_frame(path); });
 }
 
 }  // namespace sandglass

@@ -88,7 +88,12 @@ void unpack(const Json& json, T& value) {
     value = number_or_unknown(json);
   } else if constexpr (std::is_same_v<T, std::array<double, 2>>) {
     value = {number_or_unknown(json.at(0)), number_or_unknown(json.at(1))};
+  } else if constexpr (std::is_same_v<T, std::uint64_t>) {
+    // The library would convert any number, whatever becomes of it.
+    if (!json.is_number_unsigned()) throw InputError(fmt::format("{} is not a count", json.dump()));
+    value = json.get<T>();
   } else if constexpr (std::is_same_v<T, Errors>) {
+    if (!json.is_object()) throw InputError("the errors are not listed by name");
     for (const auto& [name, error] : json.items()) value.emplace_back(name, number_or_unknown(error));
   } else {
     value = json.get<T>();
@@ -107,6 +112,8 @@ Summary summary_from_json(const std::string& text) {
   Summary summary;
   try {
     const Json json = Json::parse(text);
+    // Members that were added later may be missing, but not this one.
+    if (!json.contains("state_hash")) throw InputError("this is not the summary of a run: it has no state_hash");
     visit_members(summary, [&](const std::string& at, auto& value) {
       const Json::json_pointer place(at);
       if (json.contains(place)) unpack(json.at(place), value);

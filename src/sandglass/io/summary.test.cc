@@ -75,7 +75,9 @@ TEST_CASE("the file has the keys that readers rely on, and unknowns are null") {
 }
 
 TEST_CASE("what is no summary is bad input") {
-  for (const char* text : {"", "{", "[]x", "{\"seed\": \"x\"}", "{\"momentum\": [1]}", "{\"stationary\": 1}"}) {
+  for (const char* text : {"", "{", "[]x", "{\"seed\": \"x\"}", "{\"momentum\": [1]}", "{\"stationary\": 1}", "null",
+                           "[]", "{}", "{\"state_hash\": \"\", \"seed\": -1}",
+                           "{\"state_hash\": \"\", \"seed\": 1e300}", "{\"state_hash\": \"\", \"errors\": [1]}"}) {
     CAPTURE(text);
     CHECK_THROWS_AS(summary_from_json(text), InputError);
   }

@@ -110,6 +110,10 @@ std::vector<Field> Correlator::fields() {
   return list;
 }
 
+bool Correlator::valid() const {
+  return interval_ < plan_.intervals ? due_ < schedule_.due.size() : interval_ == plan_.intervals && due_ == 0;
+}
+
 double Correlator::collision_rate() const {
   return (elapsed_collisions_ + merged_collisions_) / (elapsed_time_ + merged_time_);
 }

@@ -23,6 +23,7 @@ class Correlator {
   /// Appends the finished intervals of an independent run with the same plan. Throws RunError for a different one.
   void merge(const Correlator& other);
   [[nodiscard]] std::vector<Field> fields();
+  [[nodiscard]] bool valid() const;  ///< whether the place in the plan can be (after fields() were restored)
   /// /dynamics/{all,small,big}/{mean_square_displacement, velocity_autocorrelation, self_intermediate_scattering,
   /// gaussian_approximation, non_gaussian}/{time, collisions, value, error, count}, for the scattering also wavenumber
   /// and value[k, lag]; velocity_autocorrelation has equal_time_value and equal_time_error, <v^2>. Over

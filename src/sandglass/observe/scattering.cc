@@ -40,9 +40,14 @@ WaveShell wave_shell(double wavenumber, double box_length) {
   constexpr double spread = 0.05;
   const double unit = 2 * std::numbers::pi / box_length;
   const double wanted = wavenumber / unit;
+  if (!(wanted <= most_waves))
+    throw InputError("A wavenumber is too large for the box; lower observe.wavenumbers, which are in 1/R_s.");
   // All lengths |k|^2 / unit^2 worth a look: within the spread of the wanted one, and the nearest ones of a small box.
-  const auto low = static_cast<std::int64_t>(std::max(1.0, std::floor((wanted - 1) * (wanted - 1) * (wanted > 1))));
-  const auto high = static_cast<std::int64_t>(std::ceil((wanted + 1) * (wanted + 1)));
+  // Every few whole numbers are a sum of two squares; beyond `far` from the wanted one none is needed.
+  constexpr double far = 10000;
+  const double lowest = (wanted - 1) * (wanted - 1) * (wanted > 1), highest = (wanted + 1) * (wanted + 1);
+  const auto low = static_cast<std::int64_t>(std::max({1.0, std::floor(lowest), std::floor(wanted * wanted - far)}));
+  const auto high = static_cast<std::int64_t>(std::ceil(std::min(highest, wanted * wanted + far)));
   std::vector<std::int64_t> squares;
   for (std::int64_t square = low; square <= high; ++square) squares.push_back(square);
   auto distance = [&](std::int64_t square) { return std::fabs(std::sqrt(static_cast<double>(square)) - wanted); };

@@ -19,7 +19,9 @@ struct WaveShell {
 
 /// Whole sets of equal |k| (all directions that the symmetry of the square makes equal), nearest to `wavenumber` first,
 /// until there are four to six vectors; sets that are more than 5 % of |k| from the nearest one are left out, so that
-/// a small box gives fewer directions rather than wrong wavenumbers.
+/// a small box gives fewer directions rather than wrong wavenumbers. Throws InputError where the box holds more than
+/// `most_waves` wavelengths: finding the vectors takes as many steps.
+inline constexpr double most_waves = 1 << 20;
 WaveShell wave_shell(double wavenumber, double box_length);
 
 /// Adds sum_i <cos k.dr_i>, averaged over the vectors of the shell, over the disks of `range`.

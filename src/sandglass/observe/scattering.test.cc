@@ -37,6 +37,10 @@ TEST_CASE("a shell has four to six directions close to the wanted wavenumber, wh
   CHECK(wave_shell(0.1, 20).modes.size() == 2);  // longer than the box: (1, 0) and (0, 1), not a mixture
   CHECK(wave_shell(0.1, 20).wavenumber == doctest::Approx(2 * std::numbers::pi / 20));
   CHECK_THROWS_AS(wave_shell(0, 20), InputError);
+  const WaveShell fine = wave_shell(1e4, 600);  // near the greatest number of waves
+  CHECK(fine.modes.size() >= 4);
+  CHECK(std::fabs(fine.wavenumber - 1e4) < 1e-5);  // lengths there are some units / 10^6 apart
+  for (const double box : {1e6, 1e300, std::nan("")}) CHECK_THROWS_AS(wave_shell(1e4, box), InputError);
 }
 
 TEST_CASE("scattering of given displacements: equal to the plain loop bit by bit, and to the Gaussian law") {

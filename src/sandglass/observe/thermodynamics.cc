@@ -53,6 +53,8 @@ std::vector<Field> Timeseries::fields() {
           {"all", &all_},   {"small", &small_}, {"big", &big_}};
 }
 
+bool Timeseries::valid() const { return next_ <= times_.size() && runs_ >= 1; }
+
 std::vector<Dataset> Timeseries::results() const {
   std::vector<Dataset> results;
   auto add = [&](const char* name, const std::vector<double>& sums, double runs, const char* unit) {
@@ -123,6 +125,10 @@ void IntervalAverages::merge(const IntervalAverages& other) {
 
 std::vector<Field> IntervalAverages::fields() {
   return {{"interval", &interval_}, {"taken", &taken_}, {"sums", &sums_}, {"boundaries", &boundaries_}};
+}
+
+bool IntervalAverages::valid() const {
+  return interval_ < plan_.intervals ? taken_ < plan_.temperature_samples : interval_ == plan_.intervals && taken_ <= 1;
 }
 
 std::vector<double> IntervalAverages::interval_temperatures(Group group) const {

@@ -21,6 +21,7 @@ class Timeseries {
   /// Averages with an independent run that was sampled at the same times.
   void merge(const Timeseries& other);
   [[nodiscard]] std::vector<Field> fields();
+  [[nodiscard]] bool valid() const;  ///< whether the place in time can be (after fields() were restored)
   /// /timeseries/{time, collisions, temperature_all, temperature_small, temperature_big}
   [[nodiscard]] std::vector<Dataset> results() const;
 
@@ -44,6 +45,7 @@ class IntervalAverages {
   /// Appends the intervals of an independent run with the same plan.
   void merge(const IntervalAverages& other);
   [[nodiscard]] std::vector<Field> fields();
+  [[nodiscard]] bool valid() const;  ///< whether the place in the plan can be (after fields() were restored)
   /// /timeseries/intervals/{time (middle), temperature_all, temperature_small, temperature_big, collision_rate}
   [[nodiscard]] std::vector<Dataset> results() const;
 

@@ -2,130 +2,135 @@
 
 #include <cmath>
 
-#include "sandglass/dynamics/simulation.h"
-#include "sandglass/observe/population.h"
-
 namespace sandglass {
 namespace {
 
-constexpr int rough_windows = 2, least_windows = 3, most_windows = 12;
+constexpr std::uint64_t rough_windows = 2, least_windows = 3, most_windows = 12;
 
 // Relative standard error of T to be reached: 0.2 %, but in small systems no better than a twentieth of the spread of T
 // itself, 1/sqrt(N).
 double wanted_error(double disks) { return std::fmax(0.002, 0.05 / std::sqrt(disks)); }
 
-/// Mean and its standard error of a few values, in the order in which they came.
-struct Average {
-  double sum = 0, squares = 0;
-  int count = 0;
-
-  void add(double value) {
-    sum += value;
-    squares += value * value;
-    ++count;
-  }
-  [[nodiscard]] double mean() const { return sum / count; }
-  [[nodiscard]] double relative_error() const {
-    const double variance = std::fmax(squares / count - mean() * mean(), 0.0);
-    return std::sqrt(variance / (count - 1)) / mean();
-  }
-};
-
-struct Window {
-  double temperature, collision_rate;
-};
-
-/// The scratch run: counts beats, measures windows of them.
-class Scratch {
- public:
-  Scratch(State state, double beat, const Progress& progress)
-      : population_(population_of(state)), beat_(beat), progress_(progress), simulation_(std::move(state)) {}
-
-  void set_progress(double fraction) { fraction_ = fraction; }
-
-  void run(std::uint64_t beats) {
-    for (std::uint64_t i = 0; i < beats; ++i) {
-      report_progress(progress_, "calibrating the drive", fraction_);  // also where the caller may stop it
-      simulation_.run_until(static_cast<double>(++beats_) * beat_);
-    }
-  }
-
-  Window measure(std::uint64_t beats) {
-    const std::uint64_t before = simulation_.tally().collisions();
-    double sum = 0;
-    for (std::uint64_t i = 0; i < beats; ++i) {
-      run(1);
-      simulation_.make_frame(frame_);
-      take_snapshot(frame_, population_, snapshot_);
-      sum += temperatures(snapshot_, population_).all;
-    }
-    const auto collisions = static_cast<double>(simulation_.tally().collisions() - before);
-    const auto duration = static_cast<double>(beats) * beat_;
-    return {sum / static_cast<double>(beats), 2 * collisions / (static_cast<double>(simulation_.size()) * duration)};
-  }
-
-  void drive(double frequency, double amplitude) {
-    State state = simulation_.state();
-    change_drive(state, frequency, amplitude);
-    simulation_ = Simulation(std::move(state));
-  }
-
- private:
-  Population population_;
-  double beat_;
-  const Progress& progress_;
-  double fraction_ = 0;
-  std::uint64_t beats_ = 0;
-  Simulation simulation_;
-  Frame frame_;
-  Snapshot snapshot_;
-};
-
 }  // namespace
 
-Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& progress) {
-  const auto disks = static_cast<double>(start.size());
+void Calibrator::Average::add(double value) {
+  sum += value;
+  squares += value * value;
+  ++count;
+}
+
+double Calibrator::Average::relative_error() const {
+  const auto n = static_cast<double>(count);
+  const double variance = std::fmax(squares / n - mean() * mean(), 0.0);
+  return std::sqrt(variance / (n - 1)) / mean();
+}
+
+Calibrator::Calibrator(State start, const CalibrationGoal& goal)
+    : goal_(goal),
+      error_(goal.temperature_error > 0 ? goal.temperature_error : wanted_error(static_cast<double>(start.size()))),
+      population_(population_of(start)),
+      simulation_(start),
+      result_{.frequency = start.drive.frequency, .amplitude = start.drive.amplitude} {
   const double restitution = start.collision.restitution;
   const double relaxation = 4 / (3 * (1 - restitution * restitution));
-  const double error = goal.temperature_error > 0 ? goal.temperature_error : wanted_error(disks);
-  const double length = std::fmin(std::fmax(relaxation / (disks * error * error), 25.0), 5e3);
-  const auto settling = static_cast<std::uint64_t>(std::ceil(5 * relaxation));
+  settling_beats_ = std::ceil(5 * relaxation);
+  const double length = relaxation / (static_cast<double>(start.size()) * error_ * error_);
+  measured_beats_ = std::fmin(std::fmax(length, 25.0), 5e3);
+}
 
-  Calibration result{.frequency = start.drive.frequency, .amplitude = start.drive.amplitude};
-  Scratch scratch(std::move(start), goal.beat, progress);
-  Average frequencies, amplitudes;
-  for (int window = 0; amplitudes.count < most_windows; ++window) {
-    const bool rough = window < rough_windows;
-    scratch.set_progress(window / static_cast<double>(rough_windows + most_windows));
-    // Ageing happens once, when the temperature is about right.
-    if (window == rough_windows) scratch.run(static_cast<std::uint64_t>(goal.settle));
-    scratch.run(settling);
-    const auto [temperature, rate] =
-        scratch.measure(static_cast<std::uint64_t>(std::ceil(rough ? length / 2 : length)));
-    ++result.windows;
-    result.collision_rate = rate;
+bool Calibrator::rough() const { return window_ < rough_windows; }
 
-    const double ratio = goal.temperature / temperature;
-    const double frequency = goal.frequency.value_or(rate * std::sqrt(ratio));
-    const double amplitude = result.amplitude * std::sqrt(result.frequency / frequency * ratio * std::sqrt(ratio));
-    if (rough) {
-      result.frequency = frequency;
-      result.amplitude = amplitude;
-    } else {
-      frequencies.add(frequency);
-      amplitudes.add(amplitude);
-      result.frequency = frequencies.mean();
-      result.amplitude = amplitudes.mean();
-      if (amplitudes.count >= least_windows) {
-        result.temperature_error = 2 * amplitudes.relative_error();  // T ~ p^2
-        result.converged = result.temperature_error < 2 * error;
-        if (result.temperature_error < error) break;
-      }
+/// Ageing happens once, when the temperature is about right.
+std::uint64_t Calibrator::beats_before_measuring() const {
+  return static_cast<std::uint64_t>(settling_beats_) +
+         (window_ == rough_windows ? static_cast<std::uint64_t>(goal_.settle) : 0);
+}
+
+std::uint64_t Calibrator::beats_of_window() const {
+  const double measured = rough() ? measured_beats_ / 2 : measured_beats_;
+  return beats_before_measuring() + static_cast<std::uint64_t>(std::ceil(measured));
+}
+
+double Calibrator::fraction() const {
+  const double within = static_cast<double>(beats_in_window_) / static_cast<double>(beats_of_window());
+  return done() ? 1 : (static_cast<double>(window_) + within) / static_cast<double>(rough_windows + most_windows);
+}
+
+void Calibrator::advance_one_beat() {
+  if (beats_in_window_ == beats_before_measuring()) {
+    collisions_before_ = simulation_.tally().collisions();
+    temperature_sum_ = 0;
+  }
+  simulation_.run_until(static_cast<double>(++beats_) * goal_.beat);
+  if (++beats_in_window_ <= beats_before_measuring()) return;
+  simulation_.make_frame(frame_);
+  take_snapshot(frame_, population_, snapshot_);
+  temperature_sum_ += temperatures(snapshot_, population_).all;
+  if (beats_in_window_ == beats_of_window()) end_window();
+}
+
+void Calibrator::end_window() {
+  const auto measured = static_cast<double>(beats_of_window() - beats_before_measuring());
+  const auto collisions = static_cast<double>(simulation_.tally().collisions() - collisions_before_);
+  const double ratio = goal_.temperature / (temperature_sum_ / measured);
+  ++result_.windows;
+  result_.collision_rate = 2 * collisions / (static_cast<double>(simulation_.size()) * (measured * goal_.beat));
+
+  const double frequency = goal_.frequency.value_or(result_.collision_rate * std::sqrt(ratio));
+  const double amplitude = result_.amplitude * std::sqrt(result_.frequency / frequency * ratio * std::sqrt(ratio));
+  if (rough()) {
+    result_.frequency = frequency;
+    result_.amplitude = amplitude;
+  } else {
+    frequencies_.add(frequency);
+    amplitudes_.add(amplitude);
+    result_.frequency = frequencies_.mean();
+    result_.amplitude = amplitudes_.mean();
+    if (amplitudes_.count >= least_windows) {
+      result_.temperature_error = 2 * amplitudes_.relative_error();  // T ~ p^2
+      result_.converged = result_.temperature_error < 2 * error_;
+      done_ = result_.temperature_error < error_ || amplitudes_.count == most_windows;
     }
-    scratch.drive(result.frequency, result.amplitude);
+  }
+  ++window_;
+  beats_in_window_ = 0;
+  if (done()) return;
+  State state = simulation_.state();
+  change_drive(state, result_.frequency, result_.amplitude);
+  simulation_ = Simulation(std::move(state));
+}
+
+std::vector<Field> Calibration::fields() {
+  return {{"frequency", &frequency},           {"amplitude", &amplitude}, {"temperature_error", &temperature_error},
+          {"collision_rate", &collision_rate}, {"windows", &windows},     {"converged", &converged}};
+}
+
+std::vector<Field> Calibrator::fields() {
+  std::vector<Field> fields = result_.fields();
+  for (const Field& own : std::initializer_list<Field>{{"beats", &beats_},
+                                                       {"window", &window_},
+                                                       {"beats_in_window", &beats_in_window_},
+                                                       {"collisions_before", &collisions_before_},
+                                                       {"temperature_sum", &temperature_sum_},
+                                                       {"frequencies_sum", &frequencies_.sum},
+                                                       {"frequencies_squares", &frequencies_.squares},
+                                                       {"frequencies_count", &frequencies_.count},
+                                                       {"amplitudes_sum", &amplitudes_.sum},
+                                                       {"amplitudes_squares", &amplitudes_.squares},
+                                                       {"amplitudes_count", &amplitudes_.count},
+                                                       {"done", &done_}})
+    fields.push_back(own);
+  return fields;
+}
+
+Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& progress) {
+  Calibrator calibrator(std::move(start), goal);
+  while (!calibrator.done()) {
+    report_progress(progress, "calibrating the drive", calibrator.fraction());  // also where the caller may stop it
+    calibrator.advance_one_beat();
   }
   report_progress(progress, "calibrating the drive", 1);
-  return result;
+  return calibrator.result();
 }
 
 }  // namespace sandglass

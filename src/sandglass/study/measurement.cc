@@ -1,5 +1,7 @@
 #include "sandglass/study/measurement.h"
 
+#include <cmath>
+
 #include "sandglass/core/errors.h"
 
 namespace sandglass {
@@ -21,6 +23,16 @@ void visit_sums(T& tally, Visit&& visit) {
 
 std::array<std::size_t, species_count> disk_counts(const Population& population) {
   return {population.range(small).size(), population.range(big).size()};
+}
+
+/// Nothing is allocated on the word of a checkpoint: what sets the size of the observers is in the configuration too.
+void check_plan(const MeasurementPlan& plan, const Config& config) {
+  constexpr double widest = 1e15;  // longest by shortest lag; 10^12 collisions per disk span less
+  const bool configured = plan.intervals == config.run.intervals && plan.wavenumbers == config.observe.wavenumbers &&
+                          plan.lags_per_decade == config.observe.lags_per_decade;
+  if (!configured || !std::isfinite(plan.start) || plan.start < 0 || !std::isfinite(plan.end()) ||
+      !(plan.interval_length <= widest * plan.shortest_lag) || plan.temperature_samples > 10000)
+    throw InputError("the checkpoint is damaged: what it measures is not what is configured");
 }
 
 }  // namespace
@@ -61,8 +73,11 @@ std::vector<FieldGroup> Measurement::fields() {
 
 FieldGroup Measurement::plan_fields() { return {"plan", plan_.fields()}; }
 
-void Measurement::prepare_restore(bool begun) {
-  if (begun) begin(plan_, {});
+void Measurement::prepare_restore(bool begun, const Config& config) {
+  if (begun) {
+    check_plan(plan_, config);
+    begin(plan_, {});
+  }
   boundaries_.clear();
 }
 
@@ -76,9 +91,15 @@ void Measurement::store_boundaries() {
 }
 
 void Measurement::finish_restore() {
-  if (stored_counts_.size() * sum_columns != stored_sums_.size() * count_columns)
+  if (!timeseries_.valid() || (begun() && !(correlator_->valid() && averages_->valid())))
+    throw InputError("the checkpoint is damaged: it stands at no time of its measurement");
+  if (stored_counts_.size() % count_columns != 0 || stored_sums_.size() % sum_columns != 0 ||
+      stored_counts_.size() / count_columns != stored_sums_.size() / sum_columns)
     throw InputError("the checkpoint is damaged: its tallies do not fit each other");
-  boundaries_.assign(stored_counts_.size() / count_columns, {});
+  const std::size_t held = stored_counts_.size() / count_columns;
+  if (begun() ? held < 1 || held > plan_.intervals + 1 : held != 0)
+    throw InputError("the checkpoint is damaged: it holds a wrong number of tallies");
+  boundaries_.assign(held, {});
   auto count = stored_counts_.begin();
   auto sum = stored_sums_.begin();
   for (Tally& tally : boundaries_) {

@@ -6,6 +6,7 @@
 
 #include "sandglass/core/state.h"
 #include "sandglass/io/checkpoint.h"
+#include "sandglass/io/config.h"
 #include "sandglass/observe/correlator.h"
 #include "sandglass/observe/observer.h"
 #include "sandglass/observe/tally_averages.h"
@@ -49,8 +50,11 @@ class Measurement {
   // Checkpoints: what to store; and, in a measurement just made from the start, the two steps of restoring.
   [[nodiscard]] std::vector<FieldGroup> fields();
   [[nodiscard]] FieldGroup plan_fields();  ///< first: the plan, without which the observers have no size
-  void prepare_restore(bool begun);        ///< then: makes the observers for it, to be filled through fields()
-  void finish_restore();                   ///< last: takes the tallies out of their stored form
+  /// Then: makes the observers for it, to be filled through fields(). Throws InputError if it is not a plan of
+  /// `config`.
+  void prepare_restore(bool begun, const Config& config);
+  /// Last: takes the tallies out of their stored form. Throws InputError if the observers stand where none can.
+  void finish_restore();
 
  private:
   void store_boundaries();

@@ -11,11 +11,14 @@
 #include <optional>
 
 #include "sandglass/core/errors.h"
+#include "sandglass/core/version.h"
 #include "sandglass/dynamics/simulation.h"
 #include "sandglass/dynamics/start_check.h"
+#include "sandglass/dynamics/watch.h"
 #include "sandglass/io/atomic_file.h"
 #include "sandglass/io/checkpoint.h"
 #include "sandglass/io/observables.h"
+#include "sandglass/io/state_file.h"
 #include "sandglass/io/trajectory.h"
 #include "sandglass/study/calibrate.h"
 #include "sandglass/study/measurement.h"
@@ -27,7 +30,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Thrown out of preparation and calibration when the run is asked to stop: nothing is lost, they start anew.
+/// What is kept in checkpoints changes with this number.
+constexpr std::uint64_t checkpoint_format = 2;
+
+/// Thrown out of the preparation when the run is asked to stop. There is nothing yet to go on from: it starts anew.
 struct Stopped {};
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -51,6 +57,10 @@ class FrameWriter {
     write_frame(path_, written_++, std::llround(collisions), frame, box_length_);
   }
   void merge(const FrameWriter&) {}  // two trajectories stay two files
+  /// What was written is on the disk before a checkpoint says so.
+  void sync() const {
+    if (written_ > 0) sync_file(path_);
+  }
   [[nodiscard]] std::vector<Field> fields() { return {{"written", &written_}}; }
   [[nodiscard]] std::vector<Dataset> results() const { return {}; }
 
@@ -61,6 +71,17 @@ class FrameWriter {
   std::optional<MeasurementPlan> plan_;
 };
 static_assert(Observer<FrameWriter>);
+
+/// Refuses to go on with a run of another configuration, `held`.
+void check_same_run(const Config& config, const Config& held, const RunFolder& folder) {
+  const std::vector<std::string> differing = differing_keys(config, held);
+  if (differing.empty()) return;
+  throw InputError(
+      fmt::format("{} holds a checkpoint or run with other values of: {}. A resumed run must be the same run: give the "
+                  "same values, "
+                  "or choose another folder with -o",
+                  folder.path().string(), fmt::join(differing, ", ")));
+}
 
 class PointRun {
  public:
@@ -74,15 +95,24 @@ class PointRun {
   Summary finish();
 
  private:
-  void calibrate_drive(State& state, const Progress& progress);
+  void begin_calibrating(State start);
+  void calibrate();
+  void begin_equilibrating(State start);
   void equilibrate();
   void begin_measuring();
   bool measure();
   void advance_one_beat();
+  template <class Advance>
+  void watched_beat(Advance&& advance);
+  template <class Act>
+  void watched(Act&& act);
+  void report_violation(const Violation& violation);
   [[nodiscard]] bool equilibrated() const;
   [[nodiscard]] double collisions_per_disk() const;
   [[nodiscard]] bool counts_collisions() const;
-  [[nodiscard]] bool stop_requested() const { return monitor_.stop_requested && monitor_.stop_requested(); }
+  [[nodiscard]] State start_state(const Progress& progress) const;
+  [[nodiscard]] Simulation& simulation() { return calibrator_ ? calibrator_->simulation() : *simulation_; }
+  [[nodiscard]] bool stop_requested() const;
   void report(const char* stage, double fraction);
   void checkpoint_now_and_then();
   void write_checkpoint_now();
@@ -94,11 +124,15 @@ class PointRun {
   const RunMonitor& monitor_;
   const double beat_;
 
+  std::optional<Calibrator> calibrator_;  // only while it is at work: afterwards there is the simulation
   std::optional<Simulation> simulation_;
   std::optional<Measurement> measurement_;
   std::optional<FrameWriter> frames_;
+  Watch watch_;  // the calibration, whose run is thrown away, is only sampled
   RunFacts facts_;
 
+  std::uint64_t format_ = checkpoint_format;
+  std::uint64_t calibrating_ = 0;     // 1 while the drive is being calibrated
   std::uint64_t beats_ = 0;           // done since t = 0
   std::uint64_t measuring_ = 0;       // 1 once equilibration is over
   std::uint64_t first_beat_ = 0;      // of the measured stretch
@@ -113,45 +147,96 @@ class PointRun {
   Clock::time_point started_ = Clock::now(), last_checkpoint_ = Clock::now();
 };
 
+bool PointRun::stop_requested() const {
+  const double most = config_.run.max_walltime_seconds;
+  return (monitor_.stop_requested && monitor_.stop_requested()) || (most > 0 && seconds_since(started_) >= most);
+}
+
+/// The initial state, made anew if need be: always the same bits.
+State PointRun::start_state(const Progress& progress) const {
+  try {
+    if (std::filesystem::exists(folder_.start())) return read_state(folder_.start());
+  } catch (const InputError& error) {
+    log(fmt::format("{}; the start is prepared again", error.what()));
+  }
+  return make_start(config_, progress);
+}
+
 void PointRun::start() {
   // What may still be refused is refused before the folder is touched.
-  const Progress progress = [this](std::string_view stage, double fraction) {
+  State start = make_start(config_, [this](std::string_view stage, double fraction) {
     if (stop_requested()) throw Stopped{};
     report_progress(monitor_.progress, stage, fraction);
-  };
-  State state = make_start(config_, progress);
-  check_start(state);
+  });
+  check_start(start);
   folder_.begin();
   write_whole(folder_.config(), config_to_toml(config_));
   log("initial state prepared");
-  if (state.drive.kind != DriveKind::none) calibrate_drive(state, progress);
-  if (config_.output.trajectory_frames > 0)
-    create_trajectory(folder_.trajectory(), state, config_.output.trajectory_frames);
-  frames_.emplace(folder_.trajectory(), config_.output.trajectory_frames, state.box_length);
-  measurement_.emplace(state, beat_);
-  simulation_.emplace(std::move(state));
+  if (start.drive.kind == DriveKind::none) return begin_equilibrating(std::move(start));
+  write_state(folder_.start(), start);
+  begin_calibrating(std::move(start));
 }
 
-void PointRun::calibrate_drive(State& state, const Progress& progress) {
+void PointRun::begin_calibrating(State start) {
   CalibrationGoal goal{.temperature = config_.drive.temperature, .frequency = config_.drive.frequency, .beat = beat_};
   // Above 0.78 the collision rate ages for long: calibrate an aged copy, or T would drift from the start.
   if (config_.system.packing_fraction > 0.78) goal.settle = config_.run.equilibrate;
-  facts_.calibration = calibrate(state, goal, progress);
-  state.drive.frequency = facts_.calibration.frequency;
-  state.drive.amplitude = facts_.calibration.amplitude;
-  start_kick_clocks(state);
-  log(fmt::format("drive calibrated in {} windows: frequency {}, amplitude {}", facts_.calibration.windows,
-                  state.drive.frequency, state.drive.amplitude));
+  calibrator_.emplace(std::move(start), goal);
+  calibrating_ = 1;
+}
+
+void PointRun::calibrate() {
+  while (!calibrator_->done() && !stop_requested()) {
+    report_progress(monitor_.progress, "calibrating the drive", calibrator_->fraction());
+    watched_beat([this] { calibrator_->advance_one_beat(); });
+    checkpoint_now_and_then();
+  }
+  facts_.calibration = calibrator_->result();
+}
+
+void PointRun::begin_equilibrating(State start) {
+  if (calibrator_) {
+    const Calibration& found = facts_.calibration;
+    start.drive.frequency = found.frequency;
+    start.drive.amplitude = found.amplitude;
+    start_kick_clocks(start);
+    log(fmt::format("drive calibrated in {} windows: frequency {}, amplitude {}", found.windows, found.frequency,
+                    found.amplitude));
+    calibrator_.reset();
+    calibrating_ = 0;
+  }
+  if (config_.output.trajectory_frames > 0)
+    create_trajectory(folder_.trajectory(), start, config_.output.trajectory_frames);
+  frames_.emplace(folder_.trajectory(), config_.output.trajectory_frames, start.box_length);
+  measurement_.emplace(start, beat_);
+  simulation_.emplace(std::move(start));
+  watch_ = Watch(config_.run.self_check);
 }
 
 void PointRun::resume() {
+  const Checkpoint found = read_checkpoint(folder_.checkpoint(), {{"run", {{"format", &format_}}}});
+  if (format_ != checkpoint_format)
+    throw InputError(fmt::format(
+        "the checkpoint in {} was written by another version of sandglass: finish the run with that one, or "
+        "start a new run from its state with prepare.method = \"file\"",
+        folder_.path().string()));
+  check_same_run(config_, read_config_text(found.config_toml, "the checkpoint", folder_.path()), folder_);
+  if (!std::filesystem::exists(folder_.config())) write_whole(folder_.config(), config_to_toml(config_));
   const State probe = read_checkpoint(folder_.checkpoint(), {own_fields()}).state;
+  earlier_wall_seconds_ = facts_.wall_seconds;
+  if (calibrating_ == 1) {
+    begin_calibrating(start_state(monitor_.progress));
+    calibrator_->resume_from(read_checkpoint(folder_.checkpoint(), {{"calibrator", calibrator_->fields()}}).state);
+    log("resumed in the calibration of the drive");
+    return;
+  }
   measurement_.emplace(probe, beat_);
   frames_.emplace(folder_.trajectory(), config_.output.trajectory_frames, probe.box_length);
   read_checkpoint(folder_.checkpoint(), {measurement_->plan_fields()});
-  measurement_->prepare_restore(measuring_ == 1);
+  measurement_->prepare_restore(measuring_ == 1, config_);
   std::vector<FieldGroup> groups = measurement_->fields();
   groups.push_back({"frames", frames_->fields()});
+  groups.push_back({"calibration", facts_.calibration.fields()});
   Checkpoint checkpoint = read_checkpoint(folder_.checkpoint(), groups);
   measurement_->finish_restore();
   if (measuring_ == 1) frames_->begin(measurement_->plan());
@@ -159,13 +244,21 @@ void PointRun::resume() {
     create_trajectory(folder_.trajectory(), probe, config_.output.trajectory_frames);
     log("trajectory.h5 was gone: made again, without the frames before this point");
   }
-  earlier_wall_seconds_ = facts_.wall_seconds;
   simulation_.emplace(std::move(checkpoint.state));
+  watch_ = Watch(config_.run.self_check);
   log(fmt::format("resumed at beat {}{}", beats_,
                   checkpoint.from_previous ? " from the previous checkpoint (the newest was damaged)" : ""));
 }
 
 bool PointRun::go() {
+  if (calibrator_) {
+    calibrate();
+    if (!calibrator_->done()) {
+      write_checkpoint_now();
+      return false;
+    }
+    begin_equilibrating(start_state(monitor_.progress));
+  }
   if (measuring_ == 0) {
     equilibrate();
     if (stop_requested()) {
@@ -244,8 +337,44 @@ bool PointRun::measure() {
 void PointRun::advance_one_beat() {
   const auto start = Clock::now();
   ++beats_;
-  measurement_->run_until(*simulation_, static_cast<double>(beats_) * beat_, *frames_);
+  watched_beat([this] { measurement_->run_until(*simulation_, static_cast<double>(beats_) * beat_, *frames_); });
   engine_seconds_ += seconds_since(start);
+}
+
+template <class Advance>
+void PointRun::watched_beat(Advance&& advance) {
+  watched([&] {
+    watch_.before_beat(simulation());
+    advance();
+    watch_.after_beat(simulation());
+  });
+}
+
+template <class Act>
+void PointRun::watched(Act&& act) try {
+  act();
+} catch (const Violation& violation) {
+  report_violation(violation);
+}
+
+/// Leaves for whoever looks for the fault what there is to see, and the last good checkpoint as it is.
+void PointRun::report_violation(const Violation& violation) {
+  const std::string instructions = has_checkpoint(folder_.checkpoint()) ? "go on from the last checkpoint with --resume"
+                                                                        : "start again with --force";
+  const std::string report = fmt::format(
+      "the self-check has stopped the run: {}. Memory or processor may be failing, or the program is at "
+      "fault; nothing that was written is wrong: {}, and if it happens again, report it with {}",
+      violation.what(), instructions, folder_.diagnostic().string());
+  log(report);
+  try {
+    write_whole(folder_.diagnostic(), fmt::format("{}\n\nsandglass {}, instruction set {}, beat {}, {} events\n\n{}",
+                                                  report, version, Simulation::instruction_set(), beats_,
+                                                  simulation().tally().collisions(), config_to_toml(config_)));
+    write_state(folder_.diagnostic_state(), simulation().state());
+  } catch (const std::exception& error) {
+    log(error.what());
+  }
+  throw RunError(report);
 }
 
 void PointRun::report(const char* stage, double fraction) {
@@ -259,20 +388,29 @@ void PointRun::checkpoint_now_and_then() {
 }
 
 void PointRun::write_checkpoint_now() {
+  watched([this] { watch_.inspect(simulation()); });  // a checkpoint is good
   facts_.wall_seconds = earlier_wall_seconds_ + seconds_since(started_);
-  std::vector<FieldGroup> groups = measurement_->fields();
-  groups.push_back(measurement_->plan_fields());
-  groups.push_back({"frames", frames_->fields()});
+  std::vector<FieldGroup> groups;
+  if (calibrator_) {
+    groups.push_back({"calibrator", calibrator_->fields()});
+  } else {
+    groups = measurement_->fields();
+    groups.push_back(measurement_->plan_fields());
+    groups.push_back({"frames", frames_->fields()});
+    groups.push_back({"calibration", facts_.calibration.fields()});
+    frames_->sync();
+  }
   groups.push_back(own_fields());
-  write_checkpoint(folder_.checkpoint(), simulation_->state(), config_to_toml(config_), groups);
-  write_observables(folder_.observables(), measurement_->results());
+  write_checkpoint(folder_.checkpoint(), simulation().state(), config_to_toml(config_), groups);
+  if (measurement_) write_observables(folder_.observables(), measurement_->results());
   last_checkpoint_ = Clock::now();
 }
 
 FieldGroup PointRun::own_fields() {
-  Calibration& c = facts_.calibration;
   return {"run",
-          {{"beats", &beats_},
+          {{"format", &format_},
+           {"calibrating", &calibrating_},
+           {"beats", &beats_},
            {"measuring", &measuring_},
            {"first_beat", &first_beat_},
            {"measured_beats", &measured_beats_},
@@ -282,13 +420,7 @@ FieldGroup PointRun::own_fields() {
            {"late_collisions", &marks_.late_collisions},
            {"start_energy", &facts_.start_energy},
            {"wall_seconds", &facts_.wall_seconds},
-           {"engine_seconds", &engine_seconds_},
-           {"calibration_frequency", &c.frequency},
-           {"calibration_amplitude", &c.amplitude},
-           {"calibration_temperature_error", &c.temperature_error},
-           {"calibration_collision_rate", &c.collision_rate},
-           {"calibration_windows", &c.windows},
-           {"calibration_converged", &c.converged}}};
+           {"engine_seconds", &engine_seconds_}}};
 }
 
 Summary PointRun::finish() {
@@ -298,6 +430,8 @@ Summary PointRun::finish() {
   facts_.collisions_per_second = static_cast<double>(end.tally.collisions()) / std::max(engine_seconds_, 1e-9);
   Summary summary = summarise(config_, end, *measurement_, facts_);
   write_summary(folder_.summary(), summary);
+  std::error_code error;
+  std::filesystem::remove(folder_.start(), error);  // it has served
   log(fmt::format("finished, state {}", summary.state_hash));
   return summary;
 }
@@ -307,22 +441,13 @@ void PointRun::log(const std::string& line) const {
   file << fmt::format("{:%Y-%m-%d %H:%M:%S} UTC  {}\n", fmt::gmtime(std::time(nullptr)), line);
 }
 
-/// Refuses to go on with a run of another configuration.
-void check_same_run(const Config& config, const RunFolder& folder) {
-  const std::vector<std::string> differing = differing_keys(config, read_config(folder.config()));
-  if (differing.empty()) return;
-  throw InputError(fmt::format(
-      "{} holds a run with other values of: {}. A resumed run must be the same run: give the same values, or choose "
-      "another folder with -o",
-      folder.path().string(), fmt::join(differing, ", ")));
-}
-
 }  // namespace
 
 RunResult run_point(const Config& config, RunFolder& folder, bool resume, const RunMonitor& monitor) {
   PointRun run(config, folder, monitor);
   const bool held = resume && folder.holds_run();
-  if (held) check_same_run(config, folder);
+  const bool has_config = std::filesystem::exists(folder.config());
+  if (held && has_config) check_same_run(config, read_config(folder.config()), folder);
   if (held && std::filesystem::exists(folder.summary()))
     return {RunOutcome::already_finished, read_summary(folder.summary())};
   if (held && has_checkpoint(folder.checkpoint()))
@@ -331,7 +456,11 @@ RunResult run_point(const Config& config, RunFolder& folder, bool resume, const 
     try {
       run.start();
     } catch (const Stopped&) {
-      return {RunOutcome::stopped, {}};
+      if (monitor.stop_requested && monitor.stop_requested()) return {RunOutcome::stopped, {}};
+      throw RunError(fmt::format(
+          "run.max_walltime_seconds = {} was over before the start was prepared, and there is nothing to resume from: "
+          "allow more, or make the start once with `sandglass prepare` and give it as prepare.file",
+          config.run.max_walltime_seconds));
     }
   if (!run.go()) return {RunOutcome::stopped, {}};
   return {RunOutcome::finished, run.finish()};

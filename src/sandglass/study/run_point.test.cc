@@ -85,9 +85,9 @@ TEST_CASE("a run stopped anywhere and resumed ends in the same bits of state, ob
     for (int beats = 1;; beats = beats * 3 / 2 + 1) {
       RunFolder folder = RunFolder::open(scratch / "cut", FolderMode::resume);
       int left = beats;
-      bool running = false;  // preparation and calibration, when stopped, start anew: not what is tested here
+      bool running = false;  // the preparation, when stopped, starts anew: not what is tested here
       const RunMonitor monitor{
-          .progress = [&](std::string_view stage, double) { running |= !stage.starts_with("calibrating"); },
+          .progress = [&](std::string_view stage, double) { running |= !stage.starts_with("inserting"); },
           .stop_requested = [&] { return running && left-- <= 0; }};
       const RunResult result = run_point(config, folder, true, monitor);
       if (result.outcome == RunOutcome::stopped) {

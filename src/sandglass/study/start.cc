@@ -9,6 +9,7 @@
 #include "sandglass/dynamics/epoch.h"
 #include "sandglass/io/state_file.h"
 #include "sandglass/prepare/prepare.h"
+#include "sandglass/study/memory.h"
 #include "sandglass/theory/enskog.h"
 
 namespace sandglass {
@@ -55,6 +56,7 @@ Counts counts_of(const Config& config) {
 }
 
 State make_start(const Config& config, const Progress& progress) {
+  require_memory(config.system.particles);
   State state = prepare(config, progress);
   const double beat = beat_of(config);
   state.epoch_length = beats_per_epoch * beat;

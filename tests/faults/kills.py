@@ -1,0 +1,105 @@
+"""kill -9 at random moments, again and again: the run goes on from its last checkpoint and ends in the same bits."""
+
+import os
+import pathlib
+import signal
+import time
+import unittest
+
+import faults
+import program
+
+
+class Kills(program.Case):
+    def test_killed_at_random_moments(self):
+        expected, seconds, _ = faults.undisturbed()
+        config = faults.write_config(self.folder)
+        print(f"\nseed {faults.SEED}")
+        kills = before_checkpoint = runs = 0
+        while kills < 10 * faults.TIMES:
+            out = self.folder / f"run{runs}"
+            runs += 1
+            while True:
+                running = faults.start(config, out)
+                time.sleep(faults.RANDOM.uniform(0, seconds / 3))
+                running.kill()
+                code, text = faults.finish(running)
+                if code == faults.DONE:
+                    break
+                self.assertEqual(code, -9, text)
+                kills += 1
+                before_checkpoint += not (out / "checkpoint.h5").exists()
+            self.assertEqual(faults.results(out), expected)
+            self.assertEqual([], list(out.glob("*.partial")))
+            self.assertEqual([], list(out.glob("diagnostic*")))
+        print(f"{kills} kills in {runs} runs, {before_checkpoint} before there was a checkpoint: nothing lost")
+
+    def test_stopped_at_random_moments(self):
+        expected, seconds, _ = faults.undisturbed()
+        config = faults.write_config(self.folder)
+        stops = 0
+        for run in range(faults.TIMES):
+            code = faults.RESUMABLE
+            while code == faults.RESUMABLE:
+                limit = faults.RANDOM.uniform(0.2, 0.5) * seconds
+                running = faults.start(config, self.folder / f"run{run}", "--max-walltime", f"{limit:.3f}")
+                code, text = faults.finish(running)
+                stops += code == faults.RESUMABLE
+            self.assertEqual(code, faults.DONE, text)
+            self.assertEqual(faults.results(self.folder / f"run{run}"), expected)
+        self.assertGreater(stops, 0)
+        print(f"\n{stops} stops at a wall-time limit: nothing lost")
+
+    def test_signals(self):
+        expected, _, _ = faults.undisturbed()
+        config = faults.write_config(self.folder)
+        for name in ("SIGTERM", "SIGINT", "SIGUSR1"):
+            out = self.folder / name
+            running = faults.start(config, out)
+            while not (out / "checkpoint.h5").exists():
+                time.sleep(0.02)
+            running.send_signal(getattr(signal, name))
+            began = time.monotonic()
+            code, text = faults.finish(running)
+            self.assertEqual(code, faults.RESUMABLE, text)
+            self.assertLess(time.monotonic() - began, 10)
+            code, text = faults.finish(faults.start(config, out))
+            self.assertEqual(code, faults.DONE, text)
+            self.assertEqual(faults.results(out), expected)
+
+    def test_a_second_interrupt_stops_at_once(self):
+        config = faults.write_config(self.folder)
+        running = faults.start(config, self.folder / "out", "--set", "system.particles=40000")
+        time.sleep(0.3)  # somewhere in the preparation
+        os.kill(running.pid, signal.SIGSTOP)  # both come before it can look at the first
+        os.kill(running.pid, signal.SIGINT)
+        os.kill(running.pid, signal.SIGCONT)
+        time.sleep(0.01)
+        os.kill(running.pid, signal.SIGINT)
+        code, text = faults.finish(running)
+        self.assertIn(code, (-signal.SIGINT, faults.RESUMABLE), text)
+
+
+FAKETIME = pathlib.Path("/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1")
+
+
+class Clock(program.Case):
+    @unittest.skipUnless(FAKETIME.exists(), "needs the package faketime")
+    def test_jumps(self):
+        expected, seconds, _ = faults.undisturbed()
+        config = faults.write_config(self.folder)
+        clock = self.folder / "clock"
+        clock.write_text("+0")
+        environment = os.environ | {"LD_PRELOAD": str(FAKETIME), "FAKETIME_TIMESTAMP_FILE": str(clock),
+                                    "FAKETIME_NO_CACHE": "1"}
+        running = faults.start(config, self.folder / "out", environment=environment)
+        while running.poll() is None:
+            clock.write_text(faults.RANDOM.choice(("+0", "-10d", "+10d", "+3s", "-1000d", "+20y")))
+            time.sleep(seconds / 20)
+        code, text = faults.finish(running)
+        self.assertEqual(code, faults.DONE, text)
+        self.assertEqual(faults.results(self.folder / "out"), expected)
+
+
+if __name__ == "__main__":
+    unittest.main()
