@@ -33,7 +33,7 @@ collisions = 40_000
 intervals = 2
 [output]
 trajectory_frames = 0
-checkpoint_seconds = 0.1
+checkpoint_seconds = 0.5
 [sweep]
 replicas = 2
 [[sweep.product]]
@@ -241,10 +241,10 @@ class Point(Campaign):
         self.assertIn("resumed", (campaign / self.rows(campaign)[0]["path"] / "run.log").read_text())
 
     def test_points_share_the_wall_time(self):
-        campaign = self.init(LONGER)
+        campaign = self.init(LONGER.replace("checkpoint_seconds = 0.5", "checkpoint_seconds = 100"))
         turns = 0
         while (done := program.sandglass("run", "--manifest", campaign / "manifest.tsv", "--index", 1, "--count", 4,
-                                         "--max-walltime", 1)).returncode != program.DONE:
+                                         "--max-walltime", 2)).returncode != program.DONE:
             self.assertEqual(done.returncode, 75, done.stdout + done.stderr)
             turns += 1
             self.assertLess(turns, 100, "it gets no further")
