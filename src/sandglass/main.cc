@@ -63,7 +63,8 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "sandglass: {}\n", error.what());
     return static_cast<int>(sandglass::ExitCode::bad_input);
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "sandglass: out of memory: use fewer particles (system.particles), or a machine with more memory\n");
+    fmt::print(stderr,
+               "sandglass: out of memory: use fewer particles (system.particles), or a machine with more memory\n");
   } catch (const std::exception& error) {
     fmt::print(stderr, "sandglass: {}\n", error.what());
   }

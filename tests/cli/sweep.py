@@ -33,7 +33,7 @@ collisions = 40_000
 intervals = 2
 [output]
 trajectory_frames = 0
-checkpoint_seconds = 0.1
+checkpoint_seconds = 0.5
 [sweep]
 replicas = 2
 [[sweep.product]]
@@ -239,6 +239,17 @@ class Point(Campaign):
         self.assertEqual(self.states(campaign)[1:], 3 * ["not started"])  # the time was over for them as well
         self.run_ok("run", "--manifest", manifest, "--index", 1)
         self.assertIn("resumed", (campaign / self.rows(campaign)[0]["path"] / "run.log").read_text())
+
+    def test_points_share_the_wall_time(self):
+        campaign = self.init(LONGER.replace("checkpoint_seconds = 0.5", "checkpoint_seconds = 100"))
+        fractions = [0]
+        while (done := program.sandglass("run", "--manifest", campaign / "manifest.tsv", "--index", 1, "--count", 4,
+                                         "--max-walltime", 2)).returncode != program.DONE:
+            self.assertEqual(done.returncode, 75, done.stdout + done.stderr)
+            fractions.append(self.status(campaign)["totals"]["fraction"])
+            self.assertGreater(fractions[-1], fractions[-2], "a turn got no further")
+        self.assertGreater(len(fractions), 1)
+        self.assertEqual(self.states(campaign), 4 * ["done"])
 
     def test_points_and_manifests_that_are_not(self):
         campaign = self.init()

@@ -144,8 +144,9 @@ class Cluster:
         if path is None:
             raise Unusable(f"{name} is not installed (Debian: slurmctld slurmd slurm-client munge)")
         with open(self.folder / f"{name}.out", "wb") as out:
-            self.daemons.append(subprocess.Popen([path, *arguments], env=self.environment, stdin=subprocess.DEVNULL,
-                                                 stdout=out, stderr=out))
+            # setpriv: none of them outlives a test that is killed.
+            self.daemons.append(subprocess.Popen(["setpriv", "--pdeathsig", "TERM", path, *arguments], stdout=out,
+                                                 stderr=out, stdin=subprocess.DEVNULL, env=self.environment))
 
     def wait_for(self, ready, problem, seconds=20):
         end = time.monotonic() + seconds

@@ -5,8 +5,10 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sandglass/cmd/commands.h"
@@ -104,8 +106,11 @@ Arguments parse(int argc, char** argv, int& exit_code) {
   return arguments;
 }
 
+using Clock = std::chrono::steady_clock;
+
 /// Carries one run to its report and says so. `file`, if there is one, is told of the progress.
-ExitCode carry_out(const Config& config, RunFolder& folder, bool resume, ProgressFile* file = nullptr) {
+ExitCode carry_out(const Config& config, RunFolder& folder, bool resume, const std::function<bool()>& stop_requested,
+                   ProgressFile* file = nullptr) {
   RunResult result;
   {
     ProgressBar bar;
@@ -113,7 +118,7 @@ ExitCode carry_out(const Config& config, RunFolder& folder, bool resume, Progres
       bar.show(stage, fraction);
       if (file != nullptr) file->show(stage, fraction);
     };
-    result = run_point(config, folder, resume, {.progress = show, .stop_requested = stop_signal_came});
+    result = run_point(config, folder, resume, {.progress = show, .stop_requested = stop_requested});
   }
   if (result.outcome == RunOutcome::stopped) {
     if (file != nullptr) file->stopped();
@@ -125,8 +130,10 @@ ExitCode carry_out(const Config& config, RunFolder& folder, bool resume, Progres
   return ExitCode::done;
 }
 
-/// One point of a campaign, whatever was done of it before. `spent` is how much of the wall time others before it took.
-ExitCode run_row(const Manifest& manifest, const ManifestRow& row, const Arguments& arguments, double spent) {
+/// One point of a campaign, whatever was done of it before. Its wall-time limit counts from `began`, when the first of
+/// them was started.
+ExitCode run_row(const Manifest& manifest, const ManifestRow& row, const Arguments& arguments, Clock::time_point began,
+                 bool first) {
   const std::filesystem::path path = manifest.run_folder(row);
   if (!std::filesystem::is_directory(path))
     throw InputError(fmt::format("point {} of the manifest has no folder {}: make it by sandglass sweep init",
@@ -137,12 +144,14 @@ ExitCode run_row(const Manifest& manifest, const ManifestRow& row, const Argumen
   try {
     Config config = read_point(manifest, row);
     for (const std::string& assignment : arguments.assignments) set_key(assignment, config);
-    if (double& limit = config.run.max_walltime_seconds; limit > 0 && !was_finished) {
-      limit -= spent;
-      if (limit <= 0) return ExitCode::resumable;
-    }
     file.emplace(path, config);
-    const ExitCode code = carry_out(config, folder, true, was_finished ? nullptr : &*file);
+    const double limit = config.run.max_walltime_seconds;
+    const auto stop_requested = [&] {
+      return stop_signal_came() || (limit > 0 && std::chrono::duration<double>(Clock::now() - began).count() >= limit);
+    };
+    // A limit too short to begin at all is an error of the first point; the others have what is left of it.
+    if (!first) config.run.max_walltime_seconds = 0;
+    const ExitCode code = carry_out(config, folder, true, stop_requested, was_finished ? nullptr : &*file);
     if (code == ExitCode::done) file->finished();
     if (code == ExitCode::resumable)
       fmt::print("Stopped. Go on with: sandglass run --manifest {} --index {}\n", arguments.manifest, row.index);
@@ -155,11 +164,12 @@ ExitCode run_row(const Manifest& manifest, const ManifestRow& row, const Argumen
 }
 
 /// `count` points of the manifest from `index` on, or as many as there are. One that fails does not stop the others;
-/// one that was stopped does: the time is over.
+/// one that was stopped does: the time is over for all.
 int run_rows(const Arguments& arguments) {
   const Manifest manifest = read_manifest(arguments.manifest);
   find_row(manifest, arguments.index);
-  const auto began = std::chrono::steady_clock::now();
+  const auto began = Clock::now();
+  bool first = true;
   int worst = static_cast<int>(ExitCode::done);
   const auto failed = [&](const ManifestRow& row, const std::exception& error, ExitCode code) {
     fmt::print(stderr, "sandglass: point {}: {}\n", row.index, error.what());
@@ -168,8 +178,8 @@ int run_rows(const Arguments& arguments) {
   for (const ManifestRow& row : manifest.rows) {
     if (row.index < arguments.index || row.index - arguments.index >= arguments.count) continue;
     try {
-      const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-      if (run_row(manifest, row, arguments, spent) == ExitCode::resumable) return static_cast<int>(ExitCode::resumable);
+      const ExitCode code = run_row(manifest, row, arguments, began, std::exchange(first, false));
+      if (code == ExitCode::resumable) return static_cast<int>(ExitCode::resumable);
     } catch (const InputError& error) {
       failed(row, error, ExitCode::bad_input);
     } catch (const std::exception& error) {
@@ -192,7 +202,7 @@ int run_command(int argc, char** argv) {
   RunFolder folder = RunFolder::open(arguments.folder, arguments.resume  ? FolderMode::resume
                                                        : arguments.force ? FolderMode::force
                                                                          : FolderMode::fresh);
-  const ExitCode code = carry_out(config, folder, arguments.resume);
+  const ExitCode code = carry_out(config, folder, arguments.resume, stop_signal_came);
   if (code == ExitCode::resumable) {
     const std::string config_file = folder.holds_run() ? folder.config().string() : arguments.config;
     fmt::print("Stopped. Go on with: sandglass run {} -o {} --resume\n", config_file, arguments.folder);

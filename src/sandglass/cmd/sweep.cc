@@ -113,7 +113,7 @@ int run(const Arguments& arguments) {
     ProgressBar bar;
     const bool terminal = ::isatty(STDERR_FILENO) != 0;
     result = run_campaign(
-        manifest, arguments.jobs != 0 ? arguments.jobs : usable_cores(),
+        manifest, arguments.jobs,
         {.progress =
              [&](const CampaignProgress& p) {
                std::string state = fmt::format("{} of {} done, {} running", p.done, p.points, p.running);

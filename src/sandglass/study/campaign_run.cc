@@ -18,6 +18,7 @@
 #include "sandglass/study/campaign_status.h"
 #include "sandglass/study/child_process.h"
 #include "sandglass/study/cost.h"
+#include "sandglass/study/memory.h"
 #include "sandglass/study/run_progress.h"
 
 namespace sandglass {
@@ -29,18 +30,6 @@ constexpr auto pause = std::chrono::milliseconds(50);
 constexpr auto between_reports = std::chrono::milliseconds(500);
 constexpr auto between_looks = std::chrono::seconds(2);  // at points of other processes
 constexpr int most_fruitless = 3;
-
-/// Bytes that programs may still take; 0 where the system does not tell.
-double available_memory() {
-  std::ifstream info("/proc/meminfo");
-  for (std::string word; info >> word;) {
-    if (word != "MemAvailable:") continue;
-    double kilobytes = 0;
-    info >> kilobytes;
-    return 1024 * kilobytes;
-  }
-  return 0;
-}
 
 struct Point {
   const ManifestRow* row;
@@ -103,7 +92,8 @@ class CampaignRun {
       try {
         const Config config = read_point(manifest_, row);
         point.cost = reference_seconds(config);
-        point.memory = expected_memory(config);
+        most_threads_ = std::max<std::size_t>(most_threads_, config.run.threads);
+        point.memory = needed_memory(config.system.particles);
       } catch (const InputError& error) {
         fail(point, error.what());
         continue;
@@ -116,6 +106,7 @@ class CampaignRun {
     }
     std::stable_sort(pending_.begin(), pending_.end(),
                      [](const Point* a, const Point* b) { return a->cost > b->cost; });
+    if (jobs_ == 0) jobs_ = std::max<std::size_t>(1, usable_cores() / most_threads_);
   }
 
   void start_more() {
@@ -137,7 +128,7 @@ class CampaignRun {
   [[nodiscard]] bool fits(const Point& point) const {
     double needed = point.memory;
     for (const Child& child : children_) needed += child.point->memory;
-    return children_.empty() || memory_ == 0 || needed <= memory_;
+    return children_.empty() || needed <= memory_;
   }
 
   void start(Point& point) {
@@ -238,7 +229,7 @@ class CampaignRun {
 
   std::filesystem::path manifest_file_;
   Manifest manifest_;
-  std::size_t jobs_;
+  std::size_t jobs_, most_threads_ = 1;
   const CampaignMonitor& monitor_;
   std::string program_;
   double memory_;

@@ -37,11 +37,11 @@ struct CampaignResult {
 std::size_t usable_cores();
 
 /// Starts `program` run --manifest MANIFEST --index I for every point that is not finished, longest expected first, at
-/// most `jobs` at a time and no more than memory holds. What a run prints goes to output.log in its folder. A failed
-/// point does not stop the others; one that was killed or stopped is started again while it gets further. A point whose
-/// lock another process holds is that one's: it is waited for, so that several campaigns may work in one folder. When
-/// asked to stop it asks the runs to, and waits for their checkpoints. When it dies itself, the runs are asked to stop
-/// by the system. \pre no other threads
+/// most `jobs` at a time (0: one per core, fewer where runs have several threads) and no more than memory holds. What a
+/// run prints goes to output.log in its folder. A failed point does not stop the others; one that was killed or stopped
+/// is started again while it gets further. A point whose lock another process holds is that one's: it is waited for, so
+/// that several campaigns may work in one folder. When asked to stop it asks the runs to, and waits for their
+/// checkpoints. When it dies itself, the runs are asked to stop by the system. \pre no other threads
 CampaignResult run_campaign(const std::filesystem::path& manifest_file, std::size_t jobs,
                             const CampaignMonitor& monitor, const std::string& program = "/proc/self/exe");
 

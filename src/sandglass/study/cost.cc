@@ -161,11 +161,6 @@ double expected_bytes(const Config& config) {
   return 2 * checkpoint + trajectory + report_and_observables;
 }
 
-double expected_memory(const Config& config) {
-  constexpr double program = 5e7, per_disk = 600;
-  return program + per_disk * static_cast<double>(config.system.particles) + expected_bytes(config);
-}
-
 double Pace::seconds(const Config& config) const {
   return reference_seconds(config) * interpolate(factors, config.system.packing_fraction);
 }

@@ -18,9 +18,6 @@ double reference_seconds(const Config& config);
 /// Bytes that the folder of a finished run holds: both checkpoints, the trajectory, observables and report.
 double expected_bytes(const Config& config);
 
-/// Bytes of memory that a run needs at most.
-double expected_memory(const Config& config);
-
 /// How this machine compares with the table.
 struct Pace {
   std::vector<std::pair<double, double>> factors{{0.5, 1.0}};  ///< packing fraction, this machine's time / the table's
