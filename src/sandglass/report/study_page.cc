@@ -11,6 +11,7 @@
 #include "sandglass/report/number.h"
 #include "sandglass/report/page.h"
 #include "sandglass/report/page_files.h"
+#include "sandglass/report/paper_figures.h"
 
 namespace sandglass {
 namespace {
