@@ -44,6 +44,8 @@ class Array {
   [[nodiscard]] std::size_t bytes() const { return size_ * sizeof(T); }
   T* begin() { return data_; }
   T* end() { return data_ + size_; }
+  [[nodiscard]] const T* begin() const { return data_; }
+  [[nodiscard]] const T* end() const { return data_ + size_; }
 
   /// Makes room for `size` elements; what is there stays.
   [[gnu::noinline]] void enlarge(std::size_t size) {
@@ -86,6 +88,8 @@ class GrowingArray {
   [[gnu::always_inline]] const T& operator[](std::size_t i) const { return storage_[i]; }
   T* begin() { return storage_.begin(); }
   T* end() { return storage_.begin() + size_; }
+  [[nodiscard]] const T* begin() const { return storage_.begin(); }
+  [[nodiscard]] const T* end() const { return storage_.begin() + size_; }
 
  private:
   void grow() { storage_.enlarge(size_ < 64 ? 64 : size_ + size_ / 2); }

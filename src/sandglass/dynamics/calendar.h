@@ -44,6 +44,11 @@ class Calendar {
       append(ahead <= ring_mask_ ? static_cast<std::size_t>(window & ring_mask_) : beyond(), time, slot);
   }
 
+  /// Goes on from time t, after everything before it has been taken out and while nothing later is in.
+  void skip_to(double t) {
+    if (window_of(t) > window_) window_ = window_of(t);
+  }
+
   /// Takes out and returns the slot whose event is the earliest and not after `limit`; no_disk if there is none.
   /// `before(a, b)` orders two slots whose events are at the same time; where the tables do not fit into the cache,
   /// `ahead(slot)` and `soon(slot)` are told whose events come some twenty and ten events later.

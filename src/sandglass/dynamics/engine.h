@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sandglass/core/state.h"
+#include "sandglass/dynamics/crew.h"
 #include "sandglass/dynamics/event.h"
 #include "sandglass/dynamics/simulation.h"
 
@@ -38,7 +39,17 @@ class Engine {
   virtual void make_frame(double* x, double* y, double* vx, double* vy) const = 0;
 
   std::vector<Event>* log = nullptr;
+  Crew* crew = nullptr;  ///< where several threads may be used
   Simulation::Bookkeeping bookkeeping;
+
+ protected:
+  /// The log of one of several strips, if there is a log; and all of them, in canonical order, into the log.
+  std::vector<Event>* strip_log(std::size_t strip);
+  void gather_strip_logs();
+  void drop_strip_logs();
+
+ private:
+  std::vector<std::vector<Event>> strip_logs_;
 };
 
 /// One per instruction set; all give the same bits. `state` must outlive the engine.

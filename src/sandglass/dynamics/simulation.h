@@ -16,6 +16,11 @@ struct Tuning {
   double skin = 0;           ///< width of the neighbour lists beyond contact, in R_s
   double cell_size = 0;      ///< least side of a cell of the look-up grid, in R_s
   double window_events = 0;  ///< events in a window of the calendar
+  unsigned threads = 1;      ///< at most; fewer where the box is too small for as many strips
+  // For tests of what several threads do:
+  std::uint32_t strip_rows = 0;  ///< least height of a strip, in rows of the grid
+  double window_part = 0;        ///< how far the fastest disk may fly in a window, in skins
+  double top_speed = 0;          ///< speed that a disk is trusted not to exceed, in thermal speeds sqrt(T/m)
 };
 
 /// Event-driven dynamics of a State. Neighbour lists find who may meet, a calendar finds who meets next.
@@ -49,6 +54,9 @@ class Simulation {
   /// Work that is bookkeeping, not physics: how the engine's time was spent.
   struct Bookkeeping {
     std::uint64_t predictions = 0, orphans = 0, list_rebuilds = 0, wide_partner_searches = 0;
+    // Where several threads work: windows; disks frozen in them, by passes, those resumed in the last one alone;
+    // windows in which a frozen disk was faster than trusted, and which were done again.
+    std::uint64_t windows = 0, frozen = 0, left_over = 0, windows_undone = 0;
   };
   [[nodiscard]] Bookkeeping bookkeeping() const;
 

@@ -203,7 +203,7 @@ Benchmark run_benchmark(const BenchmarkPlan& plan, const Progress& progress) {
 
   evidence.start = state.tally;
   evidence.start_energy = kinetic_energy(state);
-  Simulation simulation(std::move(state));
+  Simulation simulation(std::move(state), {.threads = static_cast<unsigned>(config.run.threads)});
   const double rate = age_disks(simulation, plan.age, beat_of(config), progress);
   result.aged = collisions_per_disk(simulation);
   const Simulation::Bookkeeping before = simulation.bookkeeping();

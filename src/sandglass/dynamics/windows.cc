@@ -1,0 +1,209 @@
+// One trajectory on several threads. Time is cut into windows, and the plane into strips of whole rows of the grid with
+// lanes between them.
+//  First pass: the disks in the lanes are frozen; the strips do the window's events side by side, and freeze what the
+//    lanes may reach. A disk that is never frozen is done with the window.
+//  Second pass: strips around the former lanes go on with the frozen disks, side by side again. What is near their own
+//    borders, in the middle of the former strips, stays frozen.
+//  Last pass: one thread does the rest, most often nothing.
+// A search from within a strip sees disks up to reach_ rows away, and the pass may change those and, in later passes,
+// the partners of those: lanes are 2 reach_ wide, those of the second pass 4 reach_, so that no two threads meet.
+#include <cmath>
+
+#include "sandglass/dynamics/isa_engine.h"
+
+namespace sandglass {
+inline namespace SANDGLASS_ISA {
+
+void IsaEngine::run(double end) {
+  if (strips_ == 1) {
+    whole_.log = log;
+    whole_.run(end);
+    state_.now = end;
+    return hand_in();
+  }
+  constexpr unsigned windows_between_copies = 24;
+  while (state_.now < end) {
+    if (windows_since_kept_ == windows_between_copies) keep();
+    do_window(std::fmin(end, state_.now + window_length()));
+  }
+}
+
+/// As many strips as there are threads for, if they are high enough for the two passes to be worth it.
+std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) const {
+  if (!crew || state_.drive.kind == DriveKind::pair) return 1;
+  const std::uint32_t reach = neighbours.grid().rows_within(neighbours.longest_range());
+  const std::uint32_t worth = tuning_.strip_rows > 0 ? tuning_.strip_rows : 12 * reach, possible = 4 * reach + 2;
+  const std::uint32_t strips = neighbours.grid().side() / (worth > possible ? worth : possible);
+  return strips < 2 ? 1 : strips < crew->size() ? strips : crew->size();
+}
+
+/// Gives the disks to strips, according to what is foreseen for them now.
+void IsaEngine::divide() {
+  const std::uint32_t side = whole_.neighbours().grid().side(), n = strips_;
+  reach_ = whole_.neighbours().grid().rows_within(whole_.neighbours().longest_range());
+  first_ = std::make_unique<Strip[]>(n);
+  shifted_ = std::make_unique<Strip[]>(n);
+  lanes_ = std::make_unique<Rows[]>(n);
+  keep();
+  const double lead = mean_lead();
+  auto border = [&](std::uint32_t s) { return static_cast<std::uint32_t>(std::uint64_t{s} * side / n); };
+  auto middle = [&](std::uint32_t s) { return (border(s) + border(s + 1)) / 2; };
+  const std::size_t between = tables_.size * 6 * reach_ / side;  // about as many disks are frozen around a lane
+  const double window = window_length();
+  for (std::uint32_t s = 0; s < n; ++s) {
+    const std::uint32_t below = s == 0 ? middle(n - 1) : middle(s - 1) + side;
+    lanes_[s] = {(border(s) + side - reach_) % side, 2 * reach_, side};
+    first_[s] = Strip(tables_, {border(s) + reach_, border(s + 1) - border(s) - 2 * reach_, side}, false);
+    first_[s].set_calendar(calendar_for(lead, tables_.size / n));
+    shifted_[s] = Strip(tables_, {(below + 2 * reach_) % side, middle(s) + side - below - 4 * reach_, side}, false);
+    shifted_[s].set_calendar(Calendar(state_.now, window, window / 16, between));
+  }
+  whole_.set_calendar(Calendar(state_.now, window, window / 16, between));
+  replenish();
+  for (std::uint32_t i = 0; i < tables_.size; ++i) {
+    const Record& disk = tables_.records[i];
+    if (disk.next_time == never || disk.next == Next::contact_entered_by_partner) continue;
+    for (std::uint32_t s = 0; s < n; ++s)
+      if (first_[s].owns(i)) first_[s].enter_calendar(i);
+  }
+}
+
+/// A disk that has been frozen is trusted not to be faster than this: beyond six thermal speeds there is one in 10^8.
+void IsaEngine::choose_top_speed() {
+  double energy = 0, fastest[species_count] = {0, 0};
+  for (std::size_t i = 0; i < tables_.size; ++i) {
+    const Record& disk = tables_.records[i];
+    const double square = disk.vx * disk.vx + disk.vy * disk.vy;
+    energy += state_.mixture.mass[disk.species] * square / 2;
+    fastest[disk.species] = std::fmax(fastest[disk.species], square);
+  }
+  const double temperature = energy / static_cast<double>(tables_.size);
+  for (const int species : {small, big}) {
+    const double thermal = std::sqrt(temperature / state_.mixture.mass[species]);
+    top_speed_[species] = tuning_.top_speed > 0 ? tuning_.top_speed * thermal
+                                                : std::fmax(6.25 * thermal, 1.1 * std::sqrt(fastest[species]));
+    top_speed_[species] *= caution_;
+  }
+}
+
+/// Lists hold what can be met while the fastest disk flies window_part() skins (see make_lists).
+double IsaEngine::window_length() const {
+  const double fastest = std::fmax(top_speed_[small], top_speed_[big]);
+  return std::fmin(window_part() * tables_.neighbours.skin / fastest, state_.epoch_length);
+}
+
+void IsaEngine::do_window(double end) {
+  const std::uint32_t n = strips_;
+  const double start = state_.now;
+  tables_.window = {start, end, {top_speed_[small], top_speed_[big]}};
+  whole_.log = strip_log(2 * n);
+  for (std::uint32_t s = 0; s < n; ++s) first_[s].log = strip_log(s), shifted_[s].log = strip_log(n + s);
+
+  crew->work(n, [&](unsigned s) {
+    first_[s].take_over(shifted_[s]);
+    first_[s].take_over(shifted_[(s + 1) % n]);
+    first_[s].take_over(whole_);
+    first_[s].freeze_rows(lanes_[s]);
+  });
+  whole_.clear_outbox();
+  crew->work(n, [&](unsigned s) { first_[s].first_pass(reach_); });
+  if (any_too_fast()) return undo(start, end);
+  crew->work(n, [&](unsigned s) {
+    shifted_[s].begin_later_pass();
+    shifted_[s].resume(first_[s]);
+    shifted_[s].resume(first_[s == 0 ? n - 1 : s - 1]);
+    shifted_[s].later_pass();
+  });
+  if (any_too_fast()) return undo(start, end);
+  std::size_t left = 0, resumed = 0;
+  for (std::uint32_t s = 0; s < n; ++s) left += first_[s].left() + shifted_[s].left(), resumed += shifted_[s].resumed();
+  if (resumed < left) {
+    whole_.begin_later_pass();
+    for (std::uint32_t s = 0; s < n; ++s) whole_.resume(first_[s]), whole_.resume(shifted_[s]);
+    whole_.later_pass();
+  }
+  if (any_too_fast()) return undo(start, end);
+  state_.now = end;
+  ++bookkeeping.windows;
+  ++windows_since_kept_;
+  hand_in();
+  replenish();
+  gather_strip_logs();
+}
+
+bool IsaEngine::any_too_fast() const {
+  bool any = whole_.too_fast();
+  for (std::uint32_t s = 0; s < strips_; ++s) any |= first_[s].too_fast() | shifted_[s].too_fast();
+  return any;
+}
+
+/// Keeps the disks as they are, for undo.
+void IsaEngine::keep() {
+  choose_top_speed();
+  if (kept_records_.size() != tables_.size) {
+    kept_records_ = Array<Record>(tables_.size);
+    kept_cold_ = Array<ColdRecord>(tables_.size);
+  }
+  const std::size_t size = tables_.size, threads = strips_;
+  crew->work(strips_, [&](unsigned s) {
+    for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i) {
+      kept_records_[i] = tables_.records[i];
+      kept_cold_[i] = tables_.cold[i];
+    }
+  });
+  kept_tally_ = state_.tally;
+  kept_now_ = state_.now;
+  windows_since_kept_ = 0;
+}
+
+/// Goes back to the disks that were kept and does all up to `end` again on one thread; up to `start` it has been
+/// logged.
+void IsaEngine::undo(double start, double end) {
+  ++bookkeeping.windows_undone;
+  caution_ *= 1.1;
+  hand_in();
+  drop_strip_logs();
+  for (std::size_t i = 0; i < tables_.size; ++i) {
+    tables_.records[i] = kept_records_[i];
+    tables_.cold[i] = kept_cold_[i];
+  }
+  state_.tally = kept_tally_;
+  state_.now = kept_now_;
+  make_lists();
+  make_calendar();
+  whole_.log = nullptr;
+  whole_.run(start);
+  whole_.log = log;
+  whole_.run(end);
+  state_.now = end;
+  hand_in();
+  divide();
+}
+
+/// Adds what the strips have counted.
+void IsaEngine::hand_in() {
+  whole_.hand_in(state_.tally, bookkeeping);
+  for (std::uint32_t s = 0; strips_ > 1 && s < strips_; ++s) {
+    first_[s].hand_in(state_.tally, bookkeeping);
+    shifted_[s].hand_in(state_.tally, bookkeeping);
+  }
+}
+
+/// Sees to it that every strip has room for the cells that will be overfull.
+void IsaEngine::replenish() {
+  auto see_to = [](Neighbours& neighbours) {
+    Grid& grid = neighbours.grid();
+    if (grid.spare_lines() < 16) grid.take_lines(64 + grid.side() / 8);
+  };
+  for (std::uint32_t s = 0; s < strips_; ++s) see_to(first_[s].neighbours()), see_to(shifted_[s].neighbours());
+}
+
+}  // namespace SANDGLASS_ISA
+
+#define SANDGLASS_JOIN_(a, b) a##b
+#define SANDGLASS_JOIN(a, b) SANDGLASS_JOIN_(a, b)
+Engine* SANDGLASS_JOIN(make_engine_, SANDGLASS_ISA)(State& state, const Tuning& tuning) {
+  return new IsaEngine(state, tuning);
+}
+
+}  // namespace sandglass
