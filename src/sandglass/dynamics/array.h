@@ -81,6 +81,7 @@ class GrowingArray {
       grow();
     storage_[size_++] = value;
   }
+  void pop_back() { --size_; }
   void clear() { size_ = 0; }
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] std::size_t size() const { return size_; }

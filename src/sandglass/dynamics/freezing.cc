@@ -14,15 +14,14 @@ inline namespace SANDGLASS_ISA {
 /// where the other was frozen, the disk moves away from it at v.n or faster, while the other follows at top_speed.
 double Strip::earliest_touch(const Record& disk, std::uint32_t ghost) const {
   const Record& other = records_[ghost];
-  const double since = tables_->window.start + static_cast<double>(cold_[ghost].frozen_at);
-  const double t = disk.time > since ? disk.time : since;
+  const double start = since(ghost), t = disk.time > start ? disk.time : start;
   const double rx =
-      box_.nearest(std::fma(disk.vx, t - disk.time, disk.x) - std::fma(other.vx, since - other.time, other.x));
+      box_.nearest(std::fma(disk.vx, t - disk.time, disk.x) - std::fma(other.vx, start - other.time, other.x));
   const double ry =
-      box_.nearest(std::fma(disk.vy, t - disk.time, disk.y) - std::fma(other.vy, since - other.time, other.y));
+      box_.nearest(std::fma(disk.vy, t - disk.time, disk.y) - std::fma(other.vy, start - other.time, other.y));
   const double distance = std::sqrt(rx * rx + ry * ry), contact = disk.radius + other.radius;
   const double speed = tables_->window.top_speed[other.species];
-  const double room = distance - contact * (1 + 1e-9) - speed * (t - since);  // 1e-9: more than all rounding
+  const double room = distance - contact * (1 + 1e-9) - speed * (t - start);  // 1e-9: more than all rounding
   if (!(room > 0)) return t;
   const double closing = speed - (rx * disk.vx + ry * disk.vy) / distance;
   return closing > 0 ? t + room / closing : never;
@@ -31,7 +30,10 @@ double Strip::earliest_touch(const Record& disk, std::uint32_t ghost) const {
 /// When disk i, on its present flight, must be frozen; never if not in this window.
 double Strip::freezing_time(std::uint32_t i) {
   const Record& disk = records_[i];
-  if (!first_pass_) check_speed(disk);
+  if (!first_pass_) {
+    check_speed(disk);
+    if (!frozen_about_) return never;
+  }
   double earliest = never;
   const std::uint32_t* const list = neighbours_.list(i);
   for (std::uint32_t n = 0; n < disk.neighbour_count; ++n)
@@ -43,15 +45,17 @@ void Strip::freeze(std::uint32_t i, double t) {
   Record& disk = records_[i];
   if (disk.partner != no_disk) part(disk.partner);
   set_next(disk, frozen, Next::freeze, no_disk);
-  const double since = (t - tables_->window.start) * (1 - 1e-6);  // so that it is not rounded up
-  cold_[i].frozen_at = since > 0 ? static_cast<float>(since) : 0;
+  const double after = (t - tables_->window.start) * (1 - 1e-6);  // so that it is not rounded up
+  cold_[i].frozen_at = after > 0 ? static_cast<float>(after) : 0;
   left_.push_back({i, row(i)});
+  frozen_about_ = true;
   check_speed(disk);
+  expect_kick(i);
   const std::uint32_t* const list = neighbours_.list(i);
   for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) {
     const std::uint32_t k = list[n];
     if (is_frozen(records_[k])) continue;
-    if (!first_pass_ && cold_[k].frozen_at == unconcerned) continue;  // done with, and never met in this window
+    if (is_done(k)) continue;  // with this window, and never met in it
     concern(k);
     freeze_no_later(k, earliest_touch(records_[k], i));
   }
@@ -84,7 +88,7 @@ void Strip::check_speed(const Record& disk) {
   const double top = tables_->window.top_speed[disk.species];
   if (disk.vx * disk.vx + disk.vy * disk.vy <= top * top) [[likely]]
     return;
-  too_fast_ = true;
+  failed_ = too_fast_ = true;
   end_ = tables_->window.start;  // stops the loop
 }
 
@@ -101,13 +105,14 @@ void Strip::freeze_rows(Rows rows) {
 void Strip::begin_pass() {
   neighbours_.refresh();
   left_.clear();
-  too_fast_ = false;
+  frozen_kicks_.clear();
+  failed_ = too_fast_ = false;
   until_stall_check_ = 1;
   progress_time_ = -never;
 }
 
 /// The disks of the outer rows look which of their neighbours are frozen.
-void Strip::first_pass(std::uint32_t reach) {
+void Strip::first_pass() {
   auto look_out = [this](std::uint32_t i) {
     concern_if_beside_frozen(i);
     if (cold_[i].frozen_at == unconcerned) return;
@@ -115,17 +120,23 @@ void Strip::first_pass(std::uint32_t reach) {
     if (partner != no_disk && is_frozen(records_[partner])) part(i);
     freeze_no_later(i, freezing_time(i));
   };
-  const std::uint32_t lower = core_.count < reach ? core_.count : reach;
-  const std::uint32_t upper = core_.count - lower < reach ? core_.count - lower : reach;
+  const std::uint32_t lower = core_.count < reach_ ? core_.count : reach_;
+  const std::uint32_t upper = core_.count - lower < reach_ ? core_.count - lower : reach_;
   neighbours_.grid().visit_rows(core_.first, lower, look_out);
   neighbours_.grid().visit_rows((core_.first + core_.count - upper) % core_.side, upper, look_out);
-  run(tables_->window.end);
+  if (tables_->state.drive.kind == DriveKind::pair) {  // of the lanes, half belongs to this strip
+    auto expect = [this](std::uint32_t i) { expect_kick(i); };
+    neighbours_.grid().visit_rows((core_.first + core_.count) % core_.side, lane_ - lane_ / 2, expect);
+    neighbours_.grid().visit_rows((core_.first + core_.side - (lane_ - lane_ / 2)) % core_.side, lane_ - lane_ / 2, expect);
+  }
+  run_window();
   end_pass();
 }
 
 void Strip::begin_later_pass() {
   begin_pass();
   first_pass_ = false;
+  frozen_about_ = false;
   resumed_ = 0;
   outbox_.clear();
   outbox_from_ = tables_->window.end;
@@ -133,19 +144,25 @@ void Strip::begin_later_pass() {
 }
 
 void Strip::resume(const Strip& other) {
-  for (const Left& disk : other.left_)
-    if ((whole_ || core_.hold(disk.row)) && is_frozen(records_[disk.slot])) {
+  const Rows around{(core_.first + core_.side - reach_) % core_.side, core_.count + 2 * reach_, core_.side};
+  for (const Left& disk : other.left_) {
+    if (!whole_ && !core_.hold(disk.row)) {
+      if (!around.hold(disk.row)) continue;
+      frozen_about_ = true;
+      expect_kick(disk.slot);
+    } else if (is_frozen(records_[disk.slot])) {
       set_next(records_[disk.slot], never, Next::review, no_disk);
       concern(disk.slot);
       ++resumed_;
     }
+  }
 }
 
 /// All disks that take part are concerned: their speed is checked at every event. The others are done with this window;
 /// their records are those of its end, and what is foreseen with them lies beyond it.
 void Strip::later_pass() {
   for (std::uint32_t n = 0; n < resumed_; ++n) predict(concerned_[n]);
-  run(tables_->window.end);
+  run_window();
   end_pass();
   (whole_ ? bookkeeping_.left_over : bookkeeping_.frozen) += resumed_;
 }

@@ -69,7 +69,7 @@ class Grid {
   [[nodiscard]] std::uint32_t side() const { return side_; }
   [[nodiscard]] std::uint32_t row_of(FixedPoint at) const { return line_of(at.y); }
 
-  /// How many rows away from its own a search within `radius` may look.
+  /// How many rows from the edge of a row on a search from beyond that edge may look.
   [[nodiscard]] std::uint32_t rows_within(double radius) const {
     return static_cast<std::uint32_t>((radius * per_unit_ + 2) * side_ * 0x1p-32) + 1;
   }
@@ -158,6 +158,9 @@ class Grid {
         if (name != Cell::empty) visit(name & Cell::slot_bits);
     });
   }
+
+  /// The least distance of points that have `rows` rows between theirs.
+  [[nodiscard]] double height(std::uint32_t rows) const { return (0x1p32 / side_ * rows - 2) * unit_; }
 
   /// Calls visit(slot) for every point in the rows from `row` on.
   template <class Visit>

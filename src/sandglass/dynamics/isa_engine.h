@@ -37,7 +37,7 @@ class IsaEngine final : public Engine {
   [[nodiscard]] double window_part() const { return tuning_.window_part > 0 ? tuning_.window_part : 0.25; }
   [[nodiscard]] double window_length() const;
   void do_window(double end);
-  [[nodiscard]] bool any_too_fast() const;
+  [[nodiscard]] bool any_failed() const;
   void undo(double start, double end);
   void hand_in();
   void replenish();

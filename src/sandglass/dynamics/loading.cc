@@ -47,7 +47,7 @@ OverlappingPair IsaEngine::make_lists() {
   tables_.leash = neighbours.leash();
   if (strips_ > 1) tables_.leash -= window_part() * tables_.neighbours.skin / 2;
   whole_.hand_in(state_.tally, bookkeeping);
-  whole_ = Strip(tables_, {}, true);
+  whole_ = Strip(tables_);
   whole_.log = log;
   for (std::uint32_t i = 0; i < tables_.size; ++i) {
     set_next(records[i], never, Next::review, no_disk);
@@ -94,7 +94,8 @@ double IsaEngine::default_skin() const {
 /// Two disks to a cell, of the five that there is room for in a line of the grid.
 double IsaEngine::default_cell_size() const {
   if (tuning_.cell_size > 0) return tuning_.cell_size;
-  return tables_.box.length * std::sqrt(2 / static_cast<double>(tables_.size));
+  const double cell = tables_.box.length * std::sqrt(2 / static_cast<double>(tables_.size));
+  return cell;
 }
 
 /// A calendar for `size` disks whose next events are `lead` ahead. The more events in a window, the more are entered

@@ -54,8 +54,10 @@ class Neighbours {
   [[nodiscard]] const Grid& grid() const { return grid_; }
   [[nodiscard]] Grid& grid() { return grid_; }
 
-  /// The farthest that the centre of a listed disk may be.
-  [[nodiscard]] double longest_range() const { return range(mixture_.radius[big], big); }
+  /// The farthest that the list centre of a listed disk may be; 1e-5: distances are taken in single precision.
+  [[nodiscard]] double longest_range() const {
+    return (1 + 1e-5) * std::fmax(range(mixture_.radius[big], big), range(mixture_.radius[small], small));
+  }
 
   /// The tables may have moved.
   void refresh() {

@@ -13,18 +13,23 @@
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
-Strip::Strip(Tables& tables, Rows core, bool whole)
+Strip::Strip(Tables& tables)
     : tables_(&tables),
       records_(tables.records.begin()),
       cold_(tables.cold.begin()),
       box_(tables.box),
       law_(tables.state.collision),
       leash_(tables.leash),
-      neighbours_(tables.neighbours),
-      core_(core),
-      whole_(whole) {
+      neighbours_(tables.neighbours) {
   for (const int a : {small, big})
     for (const int b : {small, big}) masses_[a][b] = tables.masses[a][b];
+}
+
+Strip::Strip(Tables& tables, Rows core, std::uint32_t reach, std::uint32_t lane) : Strip(tables) {
+  core_ = core;
+  reach_ = reach;
+  lane_ = lane;
+  whole_ = false;
 }
 
 void Strip::run(double end) {
@@ -160,13 +165,19 @@ void Strip::on_contact(std::uint32_t i, std::uint32_t j, double t) {
 
 void Strip::on_kick(std::uint32_t i, double t) {
   ColdRecord& cold = cold_[i];
-  const Kick kick = Kick::draw(tables_->state.seed, cold.id, ++cold.kick_count);
-  cold.next_kick = t + kick.wait / clock_rate(tables_->state.drive);
-
-  const bool pair = tables_->state.drive.kind == DriveKind::pair;
+  const Kick kick = Kick::draw(tables_->state.seed, cold.id, cold.kick_count + 1);
+  const Drive& drive = tables_->state.drive;
+  const bool pair = drive.kind == DriveKind::pair;
   std::uint32_t j = no_disk;
   if (pair) {
-    j = tables_->state.drive.partner == PartnerRule::nearest ? nearest_partner(i, t) : partner_within_reach(i, t, kick);
+    j = drive.partner == PartnerRule::within ? partner_within_reach(i, t, kick)
+        : knows_all()                        ? nearest_partner(i, t)
+                                             : nearest_known_partner(i, t);
+    if (j == undecided) return freeze(i, t);
+  }
+  ++cold.kick_count;
+  cold.next_kick = t + kick.wait / clock_rate(drive);
+  if (pair) {
     if (j == no_disk) {
       ++tally_.kicks_without_partner;
       if (log) log_event(EventKind::kick, t, i, j);
@@ -176,7 +187,7 @@ void Strip::on_kick(std::uint32_t i, double t) {
     }
   }
   ++tally_.kicks;
-  const double px = tables_->state.drive.amplitude * kick.px, py = tables_->state.drive.amplitude * kick.py;
+  const double px = drive.amplitude * kick.px, py = drive.amplitude * kick.py;
   double gained = push(i, t, px, py);
   if (pair) gained += push(j, t, -px, -py);
   tally_.injected.add(gained);

@@ -34,7 +34,9 @@ struct Entry {
 class Strip {
  public:
   Strip() = default;
-  Strip(Tables& tables, Rows core, bool whole);
+  explicit Strip(Tables& tables);                              ///< the whole plane
+  /// The rows `core`; its disks have neighbours up to `reach` rows beyond, and the next strip is `lane` rows away.
+  Strip(Tables& tables, Rows core, std::uint32_t reach, std::uint32_t lane);
 
   // -- one after the other, without threads
   /// Enters a disk that has no list. Returns its slot's neighbours by neighbours().list().
@@ -52,8 +54,8 @@ class Strip {
   void clear_outbox() { outbox_.clear(); }
   /// Freezes all disks of these rows from the start of the window on.
   void freeze_rows(Rows rows);
-  /// The window's events of the strip's own disks, which may have neighbours up to `reach` rows away.
-  void first_pass(std::uint32_t reach);
+  /// The window's events of the strip's own disks.
+  void first_pass();
   /// Goes on with those disks frozen by some strips that stand here.
   void begin_later_pass();
   void resume(const Strip& other);
@@ -62,6 +64,7 @@ class Strip {
   [[nodiscard]] std::size_t left() const { return left_.size(); }
   [[nodiscard]] std::uint32_t resumed() const { return resumed_; }
   [[nodiscard]] bool owns(std::uint32_t i) const { return whole_ || core_.hold(row(i)); }
+  [[nodiscard]] bool failed() const { return failed_; }
   [[nodiscard]] bool too_fast() const { return too_fast_; }
   void enter_calendar(std::uint32_t i) { calendar_.push(records_[i].next_time, i); }
 
@@ -90,6 +93,12 @@ class Strip {
   struct Foreseen {
     double time;
     std::uint32_t partner;
+  };
+  struct FrozenKick {  // a frozen disk's clock rings: its kick number `count`
+    double time;
+    std::uint64_t count;
+    std::uint32_t slot;
+    friend bool operator<(const FrozenKick& a, const FrozenKick& b) { return a.time > b.time; }  // for a heap
   };
   struct Left {  // a frozen disk and the row in which it stands
     std::uint32_t slot, row;
@@ -121,7 +130,9 @@ class Strip {
   [[nodiscard]] double list_expiry(const Record& disk, const ColdRecord& cold) const;
   [[nodiscard]] bool comes_before_next_of(const Record& other, double t, std::uint32_t i) const;
 
+  static constexpr std::uint32_t undecided = no_disk - 1;  // in place of a partner: a frozen disk may be nearer
   std::uint32_t nearest_partner(std::uint32_t i, double t);
+  std::uint32_t nearest_known_partner(std::uint32_t i, double t);
   [[nodiscard]] Smallest smallest_gap(const Record& disk, const std::uint32_t* list, double t) const;
   std::uint32_t partner_within_reach(std::uint32_t i, double t, const Kick& kick);
 
@@ -134,6 +145,16 @@ class Strip {
   void concern(std::uint32_t i);
   void concern_if_beside_frozen(std::uint32_t i);
   void check_speed(const Record& disk);
+  void run_window();
+  void expect_kick(std::uint32_t frozen_disk);
+  void on_frozen_kick(const FrozenKick& kick);
+  [[nodiscard]] double since(std::uint32_t i) const {
+    return tables_->window.start + static_cast<double>(cold_[i].frozen_at);
+  }
+  [[nodiscard]] double gap_at(std::uint32_t i, double t, std::uint32_t k, double t_k) const;
+  [[nodiscard]] double growth(std::uint32_t frozen_disk, double t) const;
+  [[nodiscard]] bool is_done(std::uint32_t i) const { return !first_pass_ && cold_[i].frozen_at == unconcerned; }
+  [[nodiscard]] bool knows_all() const { return whole_ && first_pass_; }
   [[nodiscard]] std::uint32_t row(std::uint32_t i) const { return neighbours_.grid().row_of(cold_[i].centre); }
 
   [[nodiscard]] bool before(std::uint32_t a, std::uint32_t b) const;
@@ -158,10 +179,16 @@ class Strip {
   Simulation::Bookkeeping bookkeeping_;
   GrowingArray<DiskName> candidates_;  // possible partners of a kick
 
-  Rows core_;          // the disks that stand here are the strip's own, in the first pass
-  bool whole_ = true;  // no other thread is at work
+  Rows core_;                // the disks that stand here are the strip's own
+  std::uint32_t reach_ = 0;  // rows beyond in which they have neighbours
+  std::uint32_t lane_ = 0;   // rows to the next strip
+  bool whole_ = true;        // no other thread is at work
   bool first_pass_ = true;
-  bool too_fast_ = false;
+  bool frozen_about_ = false;  // in a later pass: some are frozen that may be met
+  bool failed_ = false;    // the window must be undone
+  bool too_fast_ = false;  // because a disk was faster than trusted
+  GrowingArray<FrozenKick> frozen_kicks_;  // a heap
+  GrowingArray<std::uint32_t> suspects_;   // may be nearest to a frozen disk that kicks
   GrowingArray<Left> left_;                // frozen in this pass
   GrowingArray<std::uint32_t> concerned_;  // as frozen_at says, and not always so
   std::uint32_t resumed_ = 0;              // frozen in an earlier pass, not in this one

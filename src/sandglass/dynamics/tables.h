@@ -16,6 +16,7 @@ inline constexpr double never = std::numeric_limits<double>::infinity();
 struct Window {
   double start = 0, end = never;
   double top_speed[species_count] = {never, never};  ///< no frozen disk may be faster, or the window is undone
+  double way = 0;                                    ///< the farthest that one may come
 };
 
 struct Tables {

@@ -5,8 +5,8 @@
 //  Second pass: strips around the former lanes go on with the frozen disks, side by side again. What is near their own
 //    borders, in the middle of the former strips, stays frozen.
 //  Last pass: one thread does the rest, most often nothing.
-// A search from within a strip sees disks up to reach_ rows away, and the pass may change those and, in later passes,
-// the partners of those: lanes are 2 reach_ wide, those of the second pass 4 reach_, so that no two threads meet.
+// A strip sees and changes what its disks have in their lists and, in the second pass, the partners of those: lanes are
+// two such ranges wide, four in the second pass, so that no two threads meet.
 #include <cmath>
 
 #include "sandglass/dynamics/isa_engine.h"
@@ -30,9 +30,9 @@ void IsaEngine::run(double end) {
 
 /// As many strips as there are threads for, if they are high enough for the two passes to be worth it.
 std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) const {
-  if (!crew || state_.drive.kind == DriveKind::pair) return 1;
-  const std::uint32_t reach = neighbours.grid().rows_within(neighbours.longest_range());
-  const std::uint32_t worth = tuning_.strip_rows > 0 ? tuning_.strip_rows : 12 * reach, possible = 4 * reach + 2;
+  if (!crew || (state_.drive.kind == DriveKind::pair && state_.drive.partner == PartnerRule::within)) return 1;
+  const std::uint32_t lane = neighbours.grid().rows_within(4 * neighbours.longest_range());
+  const std::uint32_t worth = tuning_.strip_rows > 0 ? tuning_.strip_rows : 3 * lane, possible = lane + 2;
   const std::uint32_t strips = neighbours.grid().side() / (worth > possible ? worth : possible);
   return strips < 2 ? 1 : strips < crew->size() ? strips : crew->size();
 }
@@ -40,7 +40,11 @@ std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) const 
 /// Gives the disks to strips, according to what is foreseen for them now.
 void IsaEngine::divide() {
   const std::uint32_t side = whole_.neighbours().grid().side(), n = strips_;
-  reach_ = whole_.neighbours().grid().rows_within(whole_.neighbours().longest_range());
+  const double range = whole_.neighbours().longest_range();
+  auto rows_within = [&](double distance) { return whole_.neighbours().grid().rows_within(distance); };
+  reach_ = rows_within(range);
+  const std::uint32_t wide_lane = rows_within(4 * range);  // wide enough for kicks across it, too
+  const std::uint32_t lane = state_.drive.kind == DriveKind::pair ? wide_lane : rows_within(2 * range);
   first_ = std::make_unique<Strip[]>(n);
   shifted_ = std::make_unique<Strip[]>(n);
   lanes_ = std::make_unique<Rows[]>(n);
@@ -48,14 +52,16 @@ void IsaEngine::divide() {
   const double lead = mean_lead();
   auto border = [&](std::uint32_t s) { return static_cast<std::uint32_t>(std::uint64_t{s} * side / n); };
   auto middle = [&](std::uint32_t s) { return (border(s) + border(s + 1)) / 2; };
-  const std::size_t between = tables_.size * 6 * reach_ / side;  // about as many disks are frozen around a lane
+  const std::size_t between = tables_.size * 2 * lane / side;  // about as many disks are frozen around a lane
   const double window = window_length();
   for (std::uint32_t s = 0; s < n; ++s) {
-    const std::uint32_t below = s == 0 ? middle(n - 1) : middle(s - 1) + side;
-    lanes_[s] = {(border(s) + side - reach_) % side, 2 * reach_, side};
-    first_[s] = Strip(tables_, {border(s) + reach_, border(s + 1) - border(s) - 2 * reach_, side}, false);
+    const std::uint32_t from = border(s) - lane / 2 + lane, to = border(s + 1) - lane / 2;
+    first_[s] = Strip(tables_, {from, to - from, side}, reach_, lane);
     first_[s].set_calendar(calendar_for(lead, tables_.size / n));
-    shifted_[s] = Strip(tables_, {(below + 2 * reach_) % side, middle(s) + side - below - 4 * reach_, side}, false);
+    lanes_[s] = {(border(s) + side - lane / 2) % side, lane, side};
+    const std::uint32_t below = (s == 0 ? middle(n - 1) : middle(s - 1) + side) - wide_lane / 2 + wide_lane;
+    const std::uint32_t above = middle(s) + side - wide_lane / 2;
+    shifted_[s] = Strip(tables_, {below % side, above - below, side}, reach_, wide_lane);
     shifted_[s].set_calendar(Calendar(state_.now, window, window / 16, between));
   }
   whole_.set_calendar(Calendar(state_.now, window, window / 16, between));
@@ -95,7 +101,7 @@ double IsaEngine::window_length() const {
 void IsaEngine::do_window(double end) {
   const std::uint32_t n = strips_;
   const double start = state_.now;
-  tables_.window = {start, end, {top_speed_[small], top_speed_[big]}};
+  tables_.window = {start, end, {top_speed_[small], top_speed_[big]}, window_part() * tables_.neighbours.skin};
   whole_.log = strip_log(2 * n);
   for (std::uint32_t s = 0; s < n; ++s) first_[s].log = strip_log(s), shifted_[s].log = strip_log(n + s);
 
@@ -106,15 +112,15 @@ void IsaEngine::do_window(double end) {
     first_[s].freeze_rows(lanes_[s]);
   });
   whole_.clear_outbox();
-  crew->work(n, [&](unsigned s) { first_[s].first_pass(reach_); });
-  if (any_too_fast()) return undo(start, end);
+  crew->work(n, [&](unsigned s) { first_[s].first_pass(); });
+  if (any_failed()) return undo(start, end);
   crew->work(n, [&](unsigned s) {
     shifted_[s].begin_later_pass();
     shifted_[s].resume(first_[s]);
     shifted_[s].resume(first_[s == 0 ? n - 1 : s - 1]);
     shifted_[s].later_pass();
   });
-  if (any_too_fast()) return undo(start, end);
+  if (any_failed()) return undo(start, end);
   std::size_t left = 0, resumed = 0;
   for (std::uint32_t s = 0; s < n; ++s) left += first_[s].left() + shifted_[s].left(), resumed += shifted_[s].resumed();
   if (resumed < left) {
@@ -122,7 +128,7 @@ void IsaEngine::do_window(double end) {
     for (std::uint32_t s = 0; s < n; ++s) whole_.resume(first_[s]), whole_.resume(shifted_[s]);
     whole_.later_pass();
   }
-  if (any_too_fast()) return undo(start, end);
+  if (any_failed()) return undo(start, end);
   state_.now = end;
   ++bookkeeping.windows;
   ++windows_since_kept_;
@@ -131,9 +137,9 @@ void IsaEngine::do_window(double end) {
   gather_strip_logs();
 }
 
-bool IsaEngine::any_too_fast() const {
-  bool any = whole_.too_fast();
-  for (std::uint32_t s = 0; s < strips_; ++s) any |= first_[s].too_fast() | shifted_[s].too_fast();
+bool IsaEngine::any_failed() const {
+  bool any = whole_.failed();
+  for (std::uint32_t s = 0; s < strips_; ++s) any |= first_[s].failed() | shifted_[s].failed();
   return any;
 }
 
@@ -160,7 +166,9 @@ void IsaEngine::keep() {
 /// logged.
 void IsaEngine::undo(double start, double end) {
   ++bookkeeping.windows_undone;
-  caution_ *= 1.1;
+  bool too_fast = whole_.too_fast();
+  for (std::uint32_t s = 0; s < strips_; ++s) too_fast |= first_[s].too_fast() | shifted_[s].too_fast();
+  if (too_fast) caution_ *= 1.1;
   hand_in();
   drop_strip_logs();
   for (std::size_t i = 0; i < tables_.size; ++i) {

@@ -203,7 +203,12 @@ Benchmark run_benchmark(const BenchmarkPlan& plan, const Progress& progress) {
 
   evidence.start = state.tally;
   evidence.start_energy = kinetic_energy(state);
-  Simulation simulation(std::move(state), {.threads = static_cast<unsigned>(config.run.threads)});
+  Tuning tuning{.threads = static_cast<unsigned>(config.run.threads)};
+  if (getenv("WP")) tuning.window_part = atof(getenv("WP"));
+  if (getenv("TS")) tuning.top_speed = atof(getenv("TS"));
+  if (getenv("SK")) tuning.skin = atof(getenv("SK"));
+  if (getenv("CS")) tuning.cell_size = atof(getenv("CS"));
+  Simulation simulation(std::move(state), tuning);
   const double rate = age_disks(simulation, plan.age, beat_of(config), progress);
   result.aged = collisions_per_disk(simulation);
   const Simulation::Bookkeeping before = simulation.bookkeeping();
@@ -211,6 +216,7 @@ Benchmark run_benchmark(const BenchmarkPlan& plan, const Progress& progress) {
   result.events = counts_between(evidence.boundaries.front(), evidence.boundaries.back());
   result.bookkeeping = difference(before, simulation.bookkeeping());
 
+  { const auto b = simulation.bookkeeping(); double c = double(simulation.tally().collisions()); fprintf(stderr, "\nBOOK windows %lu coll/window %.0f frozen/coll %.4f left/coll %.5f undone %lu rebuilds %.4f\n", b.windows, c/double(b.windows?b.windows:1), double(b.frozen)/c, double(b.left_over)/c, b.windows_undone, double(b.list_rebuilds)/c); }
   State end = std::move(simulation).state();
   result.peak_bytes_per_disk = resident_bytes("VmHWM") / static_cast<double>(end.size());
   result.state_hash = state_hash(end);
