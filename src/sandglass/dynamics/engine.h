@@ -36,6 +36,9 @@ class Engine {
   /// Does every event at or before `end`, a time within the epoch, and sets state.now to it.
   virtual void run(double end) = 0;
 
+  /// How many threads it uses, once loaded.
+  [[nodiscard]] virtual unsigned threads() const = 0;
+
   virtual void make_frame(double* x, double* y, double* vx, double* vy) const = 0;
 
   std::vector<Event>* log = nullptr;

@@ -127,7 +127,8 @@ void Strip::first_pass() {
   if (tables_->state.drive.kind == DriveKind::pair) {  // of the lanes, half belongs to this strip
     auto expect = [this](std::uint32_t i) { expect_kick(i); };
     neighbours_.grid().visit_rows((core_.first + core_.count) % core_.side, lane_ - lane_ / 2, expect);
-    neighbours_.grid().visit_rows((core_.first + core_.side - (lane_ - lane_ / 2)) % core_.side, lane_ - lane_ / 2, expect);
+    neighbours_.grid().visit_rows((core_.first + core_.side - (lane_ - lane_ / 2)) % core_.side, lane_ - lane_ / 2,
+                                  expect);
   }
   run_window();
   end_pass();

@@ -18,6 +18,7 @@ class IsaEngine final : public Engine {
   void forget_what_comes() override;
   void store(Disk* disks) const override;
   void run(double end) override;
+  [[nodiscard]] unsigned threads() const override { return strips_; }
   void make_frame(double* x, double* y, double* vx, double* vy) const override;
 
  private:
@@ -32,7 +33,6 @@ class IsaEngine final : public Engine {
 
   [[nodiscard]] std::uint32_t strips_for_threads(const Neighbours& neighbours) const;
   void divide();
-  void choose_top_speed();
   void keep();
   [[nodiscard]] double window_part() const { return tuning_.window_part > 0 ? tuning_.window_part : 0.25; }
   [[nodiscard]] double window_length() const;

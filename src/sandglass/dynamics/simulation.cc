@@ -129,6 +129,7 @@ void Simulation::run_until(double end) {
 double Simulation::time() const { return run_->state.time(); }
 const Tally& Simulation::tally() const { return run_->state.tally; }
 std::size_t Simulation::size() const { return run_->size; }
+unsigned Simulation::threads() const { return run_->engine->threads(); }
 
 State Simulation::state() const& {
   State copy = run_->state;

@@ -23,6 +23,14 @@ struct Tuning {
   double top_speed = 0;          ///< speed that a disk is trusted not to exceed, in thermal speeds sqrt(T/m)
 };
 
+/// With fewer disks one thread is faster than several: a window has too little work for its borders (docs/parallel.md).
+inline constexpr std::size_t least_disks_for_threads = 50000;
+
+/// Of the threads asked for, how many to use for a trajectory of so many disks.
+inline unsigned threads_for(std::size_t particles, std::uint64_t asked) {
+  return particles < least_disks_for_threads ? 1 : static_cast<unsigned>(asked);
+}
+
 /// Event-driven dynamics of a State. Neighbour lists find who may meet, a calendar finds who meets next.
 /// Throws InputError for a state that cannot be run exactly (overlap, box too small, disk outside the box, NaN).
 class Simulation {
@@ -38,6 +46,7 @@ class Simulation {
   [[nodiscard]] double time() const;
   [[nodiscard]] const Tally& tally() const;
   [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] unsigned threads() const;  ///< that are used, at most tuning.threads
 
   /// A copy of the run at this moment; a new Simulation made from it goes on with the same bits. A Simulation that is
   /// no longer needed (std::move) frees its tables first.

@@ -31,10 +31,10 @@ struct Entry {
   std::uint32_t slot;
 };
 
-class Strip {
+class alignas(128) Strip {
  public:
   Strip() = default;
-  explicit Strip(Tables& tables);                              ///< the whole plane
+  explicit Strip(Tables& tables);  ///< the whole plane
   /// The rows `core`; its disks have neighbours up to `reach` rows beyond, and the next strip is `lane` rows away.
   Strip(Tables& tables, Rows core, std::uint32_t reach, std::uint32_t lane);
 
@@ -184,9 +184,9 @@ class Strip {
   std::uint32_t lane_ = 0;   // rows to the next strip
   bool whole_ = true;        // no other thread is at work
   bool first_pass_ = true;
-  bool frozen_about_ = false;  // in a later pass: some are frozen that may be met
-  bool failed_ = false;    // the window must be undone
-  bool too_fast_ = false;  // because a disk was faster than trusted
+  bool frozen_about_ = false;              // in a later pass: some are frozen that may be met
+  bool failed_ = false;                    // the window must be undone
+  bool too_fast_ = false;                  // because a disk was faster than trusted
   GrowingArray<FrozenKick> frozen_kicks_;  // a heap
   GrowingArray<std::uint32_t> suspects_;   // may be nearest to a frozen disk that kicks
   GrowingArray<Left> left_;                // frozen in this pass

@@ -24,7 +24,8 @@ void IsaEngine::run(double end) {
   constexpr unsigned windows_between_copies = 24;
   while (state_.now < end) {
     if (windows_since_kept_ == windows_between_copies) keep();
-    do_window(std::fmin(end, state_.now + window_length()));
+    const double windows = std::ceil((end - state_.now) / window_length());
+    do_window(windows > 1 ? state_.now + (end - state_.now) / windows : end);
   }
 }
 
@@ -71,24 +72,6 @@ void IsaEngine::divide() {
     if (disk.next_time == never || disk.next == Next::contact_entered_by_partner) continue;
     for (std::uint32_t s = 0; s < n; ++s)
       if (first_[s].owns(i)) first_[s].enter_calendar(i);
-  }
-}
-
-/// A disk that has been frozen is trusted not to be faster than this: beyond six thermal speeds there is one in 10^8.
-void IsaEngine::choose_top_speed() {
-  double energy = 0, fastest[species_count] = {0, 0};
-  for (std::size_t i = 0; i < tables_.size; ++i) {
-    const Record& disk = tables_.records[i];
-    const double square = disk.vx * disk.vx + disk.vy * disk.vy;
-    energy += state_.mixture.mass[disk.species] * square / 2;
-    fastest[disk.species] = std::fmax(fastest[disk.species], square);
-  }
-  const double temperature = energy / static_cast<double>(tables_.size);
-  for (const int species : {small, big}) {
-    const double thermal = std::sqrt(temperature / state_.mixture.mass[species]);
-    top_speed_[species] = tuning_.top_speed > 0 ? tuning_.top_speed * thermal
-                                                : std::fmax(6.25 * thermal, 1.1 * std::sqrt(fastest[species]));
-    top_speed_[species] *= caution_;
   }
 }
 
@@ -143,23 +126,42 @@ bool IsaEngine::any_failed() const {
   return any;
 }
 
-/// Keeps the disks as they are, for undo.
+/// Keeps the disks as they are, for undo, and sees how fast they are: a frozen disk is trusted not to be faster than
+/// six thermal speeds, beyond which there is one in 10^8, nor than the fastest of all now.
 void IsaEngine::keep() {
-  choose_top_speed();
   if (kept_records_.size() != tables_.size) {
     kept_records_ = Array<Record>(tables_.size);
     kept_cold_ = Array<ColdRecord>(tables_.size);
   }
+  struct alignas(64) Part {
+    double energy, fastest[species_count];  // fastest: squares
+  };
   const std::size_t size = tables_.size, threads = strips_;
+  Array<Part> parts(threads);
   crew->work(strips_, [&](unsigned s) {
+    Part part{0, {0, 0}};
     for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i) {
-      kept_records_[i] = tables_.records[i];
+      const Record& disk = kept_records_[i] = tables_.records[i];
       kept_cold_[i] = tables_.cold[i];
+      const double square = disk.vx * disk.vx + disk.vy * disk.vy;
+      part.energy += state_.mixture.mass[disk.species] * square / 2;
+      part.fastest[disk.species] = std::fmax(part.fastest[disk.species], square);
     }
+    parts[s] = part;
   });
   kept_tally_ = state_.tally;
   kept_now_ = state_.now;
   windows_since_kept_ = 0;
+
+  double energy = 0;
+  for (const Part& part : parts) energy += part.energy;
+  for (const int species : {small, big}) {
+    double fastest = 0;
+    for (const Part& part : parts) fastest = std::fmax(fastest, part.fastest[species]);
+    const double thermal = std::sqrt(energy / static_cast<double>(size) / state_.mixture.mass[species]);
+    top_speed_[species] = caution_ * (tuning_.top_speed > 0 ? tuning_.top_speed * thermal
+                                                            : std::fmax(6.25 * thermal, 1.1 * std::sqrt(fastest)));
+  }
 }
 
 /// Goes back to the disks that were kept and does all up to `end` again on one thread; up to `start` it has been

@@ -143,8 +143,14 @@ double deepest_overlap_now(State state) {
 }
 
 Simulation::Bookkeeping difference(const Simulation::Bookkeeping& begin, const Simulation::Bookkeeping& end) {
-  return {end.predictions - begin.predictions, end.orphans - begin.orphans, end.list_rebuilds - begin.list_rebuilds,
-          end.wide_partner_searches - begin.wide_partner_searches};
+  return {end.predictions - begin.predictions,
+          end.orphans - begin.orphans,
+          end.list_rebuilds - begin.list_rebuilds,
+          end.wide_partner_searches - begin.wide_partner_searches,
+          end.windows - begin.windows,
+          end.frozen - begin.frozen,
+          end.left_over - begin.left_over,
+          end.windows_undone - begin.windows_undone};
 }
 
 /// What was counted between two tallies.
@@ -203,12 +209,8 @@ Benchmark run_benchmark(const BenchmarkPlan& plan, const Progress& progress) {
 
   evidence.start = state.tally;
   evidence.start_energy = kinetic_energy(state);
-  Tuning tuning{.threads = static_cast<unsigned>(config.run.threads)};
-  if (getenv("WP")) tuning.window_part = atof(getenv("WP"));
-  if (getenv("TS")) tuning.top_speed = atof(getenv("TS"));
-  if (getenv("SK")) tuning.skin = atof(getenv("SK"));
-  if (getenv("CS")) tuning.cell_size = atof(getenv("CS"));
-  Simulation simulation(std::move(state), tuning);
+  Simulation simulation(std::move(state), {.threads = threads_for(config.system.particles, config.run.threads)});
+  result.threads = simulation.threads();
   const double rate = age_disks(simulation, plan.age, beat_of(config), progress);
   result.aged = collisions_per_disk(simulation);
   const Simulation::Bookkeeping before = simulation.bookkeeping();
@@ -216,7 +218,6 @@ Benchmark run_benchmark(const BenchmarkPlan& plan, const Progress& progress) {
   result.events = counts_between(evidence.boundaries.front(), evidence.boundaries.back());
   result.bookkeeping = difference(before, simulation.bookkeeping());
 
-  { const auto b = simulation.bookkeeping(); double c = double(simulation.tally().collisions()); fprintf(stderr, "\nBOOK windows %lu coll/window %.0f frozen/coll %.4f left/coll %.5f undone %lu rebuilds %.4f\n", b.windows, c/double(b.windows?b.windows:1), double(b.frozen)/c, double(b.left_over)/c, b.windows_undone, double(b.list_rebuilds)/c); }
   State end = std::move(simulation).state();
   result.peak_bytes_per_disk = resident_bytes("VmHWM") / static_cast<double>(end.size());
   result.state_hash = state_hash(end);

@@ -38,8 +38,12 @@ struct Window {
 /// The scratch run: counts beats, measures windows of them.
 class Scratch {
  public:
-  Scratch(State state, double beat, const Progress& progress)
-      : population_(population_of(state)), beat_(beat), progress_(progress), simulation_(std::move(state)) {}
+  Scratch(State state, double beat, unsigned threads, const Progress& progress)
+      : population_(population_of(state)),
+        beat_(beat),
+        progress_(progress),
+        tuning_{.threads = threads},
+        simulation_(std::move(state), tuning_) {}
 
   void set_progress(double fraction) { fraction_ = fraction; }
 
@@ -67,7 +71,7 @@ class Scratch {
   void drive(double frequency, double amplitude) {
     State state = simulation_.state();
     change_drive(state, frequency, amplitude);
-    simulation_ = Simulation(std::move(state));
+    simulation_ = Simulation(std::move(state), tuning_);
   }
 
  private:
@@ -76,6 +80,7 @@ class Scratch {
   const Progress& progress_;
   double fraction_ = 0;
   std::uint64_t beats_ = 0;
+  Tuning tuning_;
   Simulation simulation_;
   Frame frame_;
   Snapshot snapshot_;
@@ -92,7 +97,7 @@ Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& 
   const auto settling = static_cast<std::uint64_t>(std::ceil(5 * relaxation));
 
   Calibration result{.frequency = start.drive.frequency, .amplitude = start.drive.amplitude};
-  Scratch scratch(std::move(start), goal.beat, progress);
+  Scratch scratch(std::move(start), goal.beat, goal.threads, progress);
   Average frequencies, amplitudes;
   for (int window = 0; amplitudes.count < most_windows; ++window) {
     const bool rough = window < rough_windows;

@@ -15,6 +15,7 @@ struct CalibrationGoal {
   double beat = 1;                    ///< one mean free time by the formula
   double settle = 0;                  ///< collisions per disk to age before calibrating (dense states)
   double temperature_error = 0;       ///< relative error of T to aim at; 0: 0.2 %, below N = 625 0.05 / sqrt(N)
+  unsigned threads = 1;
 };
 
 /// The values to freeze, and how well they are known.

@@ -93,6 +93,7 @@ class PointRun {
   RunFolder& folder_;
   const RunMonitor& monitor_;
   const double beat_;
+  const Tuning tuning_{.threads = threads_for(config_.system.particles, config_.run.threads)};
 
   std::optional<Simulation> simulation_;
   std::optional<Measurement> measurement_;
@@ -129,11 +130,12 @@ void PointRun::start() {
     create_trajectory(folder_.trajectory(), state, config_.output.trajectory_frames);
   frames_.emplace(folder_.trajectory(), config_.output.trajectory_frames, state.box_length);
   measurement_.emplace(state, beat_);
-  simulation_.emplace(std::move(state));
+  simulation_.emplace(std::move(state), tuning_);
 }
 
 void PointRun::calibrate_drive(State& state, const Progress& progress) {
   CalibrationGoal goal{.temperature = config_.drive.temperature, .frequency = config_.drive.frequency, .beat = beat_};
+  goal.threads = tuning_.threads;
   // Above 0.78 the collision rate ages for long: calibrate an aged copy, or T would drift from the start.
   if (config_.system.packing_fraction > 0.78) goal.settle = config_.run.equilibrate;
   facts_.calibration = calibrate(state, goal, progress);
@@ -160,7 +162,7 @@ void PointRun::resume() {
     log("trajectory.h5 was gone: made again, without the frames before this point");
   }
   earlier_wall_seconds_ = facts_.wall_seconds;
-  simulation_.emplace(std::move(checkpoint.state));
+  simulation_.emplace(std::move(checkpoint.state), tuning_);
   log(fmt::format("resumed at beat {}{}", beats_,
                   checkpoint.from_previous ? " from the previous checkpoint (the newest was damaged)" : ""));
 }
@@ -294,6 +296,7 @@ FieldGroup PointRun::own_fields() {
 Summary PointRun::finish() {
   const State end = simulation_->state();
   facts_.end_energy = kinetic_energy(end);
+  facts_.threads = simulation_->threads();
   write_checkpoint_now();
   facts_.collisions_per_second = static_cast<double>(end.tally.collisions()) / std::max(engine_seconds_, 1e-9);
   Summary summary = summarise(config_, end, *measurement_, facts_);
