@@ -22,9 +22,10 @@ inline namespace SANDGLASS_ISA {
 /// that costs more than the work.
 class Calendar {
  public:
-  /// `size` entries live at a time, `lead` ahead in the mean; a window is `window` long, from time `start` on.
-  Calendar(double start, double lead, double window, std::size_t size)
-      : start_(start), inverse_width_(1 / window), out_of_cache_(size > 20000) {
+  /// `size` entries live at a time, `lead` ahead in the mean; a window is `window` long, from time `start` on. There
+  /// are `disks` disks.
+  Calendar(double start, double lead, double window, std::size_t size, std::size_t disks)
+      : start_(start), inverse_width_(1 / window), out_of_cache_(disks > 20000) {
     while (keys_ < 16384 && static_cast<double>(keys_) * lead < 4 * static_cast<double>(size) * window) keys_ *= 2;
     std::size_t windows = 16;
     while (windows < 65536 && static_cast<double>(windows) * window < 4 * lead) windows *= 2;

@@ -162,7 +162,11 @@ void Strip::resume(const Strip& other) {
 /// All disks that take part are concerned: their speed is checked at every event. The others are done with this window;
 /// their records are those of its end, and what is foreseen with them lies beyond it.
 void Strip::later_pass() {
-  for (std::uint32_t n = 0; n < resumed_; ++n) predict(concerned_[n]);
+  for (std::uint32_t n = 0; n < resumed_; ++n) {
+    if (n + 16 < resumed_) fetch_disk(concerned_[n + 16]);
+    if (n + 8 < resumed_) fetch_neighbours(concerned_[n + 8]);
+    predict(concerned_[n]);
+  }
   run_window();
   end_pass();
   (whole_ ? bookkeeping_.left_over : bookkeeping_.frozen) += resumed_;

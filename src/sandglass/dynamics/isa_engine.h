@@ -60,6 +60,7 @@ class IsaEngine final : public Engine {
   Tally kept_tally_;
   double kept_now_ = 0;
   unsigned windows_since_kept_ = 0;
+  std::uint64_t windows_done_ = 0, undone_ = 0;  // since the disks were loaded
 };
 
 }  // namespace SANDGLASS_ISA

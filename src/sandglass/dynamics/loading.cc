@@ -30,6 +30,7 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
                        .frozen_at = unconcerned};
   }
   state_.disks = std::vector<Disk>();  // gives the memory back
+  windows_done_ = undone_ = 0;
   const OverlappingPair deepest = make_lists();
   if (strips_ == 1)
     make_calendar();
@@ -69,7 +70,7 @@ OverlappingPair IsaEngine::make_lists() {
     }
   }
   // First predictions into a calendar where nearly all is far ahead, only to learn how far that is.
-  whole_.set_calendar(Calendar(state_.now, 0, 1e-12 * state_.epoch_length, 0));
+  whole_.set_calendar(Calendar(state_.now, 0, 1e-12 * state_.epoch_length, 0, 0));
   for (std::uint32_t i = 0; i < tables_.size; ++i) whole_.predict(i);
   return deepest;
 }
@@ -104,7 +105,7 @@ Calendar IsaEngine::calendar_for(double lead, std::size_t size) const {
   const auto disks = static_cast<double>(size);
   double events = std::fmin(std::fmax(2 * std::sqrt(disks), 8), 4096);
   if (tuning_.window_events > 0) events = tuning_.window_events;
-  return Calendar(state_.now, lead, events * lead / disks, size);
+  return Calendar(state_.now, lead, events * lead / disks, size, tables_.size);
 }
 
 /// About the mean time from now to a disk's next event, from the median over a sample of disks: the median of an

@@ -15,18 +15,17 @@ namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
 void IsaEngine::run(double end) {
-  if (strips_ == 1) {
-    whole_.log = log;
-    whole_.run(end);
-    state_.now = end;
-    return hand_in();
-  }
   constexpr unsigned windows_between_copies = 24;
-  while (state_.now < end) {
+  while (state_.now < end && strips_ > 1) {
     if (windows_since_kept_ == windows_between_copies) keep();
     const double windows = std::ceil((end - state_.now) / window_length());
     do_window(windows > 1 ? state_.now + (end - state_.now) / windows : end);
   }
+  if (strips_ > 1) return;
+  whole_.log = log;
+  whole_.run(end);
+  state_.now = end;
+  hand_in();
 }
 
 /// As many strips as there are threads for, if they are high enough for the two passes to be worth it.
@@ -63,9 +62,9 @@ void IsaEngine::divide() {
     const std::uint32_t below = (s == 0 ? middle(n - 1) : middle(s - 1) + side) - wide_lane / 2 + wide_lane;
     const std::uint32_t above = middle(s) + side - wide_lane / 2;
     shifted_[s] = Strip(tables_, {below % side, above - below, side}, reach_, wide_lane);
-    shifted_[s].set_calendar(Calendar(state_.now, window, window / 16, between));
+    shifted_[s].set_calendar(Calendar(state_.now, window, window / 16, between, tables_.size));
   }
-  whole_.set_calendar(Calendar(state_.now, window, window / 16, between));
+  whole_.set_calendar(Calendar(state_.now, window, window / 16, between, tables_.size));
   replenish();
   for (std::uint32_t i = 0; i < tables_.size; ++i) {
     const Record& disk = tables_.records[i];
@@ -114,6 +113,7 @@ void IsaEngine::do_window(double end) {
   if (any_failed()) return undo(start, end);
   state_.now = end;
   ++bookkeeping.windows;
+  ++windows_done_;
   ++windows_since_kept_;
   hand_in();
   replenish();
@@ -187,7 +187,10 @@ void IsaEngine::undo(double start, double end) {
   whole_.run(end);
   state_.now = end;
   hand_in();
-  divide();
+  if (++undone_ > 3 && 8 * undone_ > windows_done_)
+    strips_ = 1;  // it does not pay here; the calendar of all disks is there
+  else
+    divide();
 }
 
 /// Adds what the strips have counted.
