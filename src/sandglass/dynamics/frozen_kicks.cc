@@ -16,6 +16,13 @@ double Strip::gap_at(std::uint32_t i, double t, std::uint32_t k, double t_k) con
   return std::sqrt(rx * rx + ry * ry) - (a.radius + b.radius);
 }
 
+/// In a later pass: whether disk k has been known at time t in an earlier one. Where it was then may be forgotten; but it
+/// was not near a disk that kicked at time t, or it would have been frozen by then.
+bool Strip::is_done_at(std::uint32_t k, double t) const {
+  if (first_pass_) return false;
+  return is_done(k) || records_[k].time > t || (is_frozen(records_[k]) && since(k) > t);
+}
+
 /// How far a frozen disk may have come until time t, and a bit.
 double Strip::growth(std::uint32_t frozen_disk, double t) const {
   return tables_->window.top_speed[records_[frozen_disk].species] * (t - since(frozen_disk)) + 1e-9 * box_.length;
@@ -59,7 +66,7 @@ void Strip::on_frozen_kick(const FrozenKick& kick) {
   double nearest = never;  // no nearer one has a larger gap
   for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) {
     const std::uint32_t k = list[n];
-    if (is_done(k)) continue;  // where it was then is not known any more
+    if (is_done_at(k, t)) continue;
     if (is_frozen(records_[k]))
       nearest = std::fmin(nearest, gap_at(u, start, k, since(k)) + grown + growth(k, t));
     else
@@ -74,7 +81,7 @@ void Strip::on_frozen_kick(const FrozenKick& kick) {
   const double x = std::fma(disk.vx, start - disk.time, disk.x), y = std::fma(disk.vy, start - disk.time, disk.y);
   suspects_.clear();
   auto suspect = [&](std::uint32_t k) {
-    if (k == u || is_done(k) || is_frozen(records_[k])) return;
+    if (k == u || is_done_at(k, t) || is_frozen(records_[k])) return;
     if (gap_at(u, start, k, t) - grown <= nearest) suspects_.push_back(k);
   };
   const Grid& grid = neighbours_.grid();
@@ -94,7 +101,7 @@ std::uint32_t Strip::nearest_known_partner(std::uint32_t i, double t) {
   double best_gap = never, rival_gap = never;
   std::uint32_t best = no_disk;
   auto visit = [&](std::uint32_t k) {
-    if (k == i || is_done(k)) return;  // what is done was never near enough, or it would have been frozen
+    if (k == i || is_done_at(k, t)) return;
     if (is_frozen(records_[k])) {
       rival_gap = std::fmin(rival_gap, gap_at(i, t, k, since(k)) - growth(k, t));
       return;

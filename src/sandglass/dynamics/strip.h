@@ -152,6 +152,7 @@ class alignas(128) Strip {
     return tables_->window.start + static_cast<double>(cold_[i].frozen_at);
   }
   [[nodiscard]] double gap_at(std::uint32_t i, double t, std::uint32_t k, double t_k) const;
+  [[nodiscard]] bool is_done_at(std::uint32_t k, double t) const;
   [[nodiscard]] double growth(std::uint32_t frozen_disk, double t) const;
   [[nodiscard]] bool is_done(std::uint32_t i) const { return !first_pass_ && cold_[i].frozen_at == unconcerned; }
   [[nodiscard]] bool knows_all() const { return whole_ && first_pass_; }
