@@ -178,6 +178,15 @@ void Strip::end_pass() {
   concerned_.clear();
 }
 
+void Strip::remake_calendar(Calendar calendar) {
+  calendar_ = std::move(calendar);
+  neighbours_.refresh();
+  neighbours_.grid().visit_rows(core_.first, core_.count, [this](std::uint32_t i) {
+    const Record& disk = records_[i];
+    if (disk.next_time < never && disk.next != Next::contact_entered_by_partner) enter_calendar(i);
+  });
+}
+
 void Strip::take_over(const Strip& other) {
   for (const Entry& entry : other.outbox_)
     if (owns(entry.slot) && records_[entry.slot].next_time == entry.time) calendar_.push(entry.time, entry.slot);

@@ -16,8 +16,8 @@ double Strip::gap_at(std::uint32_t i, double t, std::uint32_t k, double t_k) con
   return std::sqrt(rx * rx + ry * ry) - (a.radius + b.radius);
 }
 
-/// In a later pass: whether disk k has been known at time t in an earlier one. Where it was then may be forgotten; but it
-/// was not near a disk that kicked at time t, or it would have been frozen by then.
+/// In a later pass: whether disk k has been known at time t in an earlier one. Where it was then may be forgotten; but
+/// it was not near a disk that kicked at time t, or it would have been frozen by then.
 bool Strip::is_done_at(std::uint32_t k, double t) const {
   if (first_pass_) return false;
   return is_done(k) || records_[k].time > t || (is_frozen(records_[k]) && since(k) > t);

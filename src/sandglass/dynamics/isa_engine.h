@@ -33,8 +33,10 @@ class IsaEngine final : public Engine {
 
   [[nodiscard]] std::uint32_t strips_for_threads(const Neighbours& neighbours) const;
   void divide();
+  void look_for_top_speed();
   void keep();
   [[nodiscard]] double window_part() const { return tuning_.window_part > 0 ? tuning_.window_part : 0.25; }
+  [[nodiscard]] double way() const { return window_part() * tables_.neighbours.skin; }
   [[nodiscard]] double window_length() const;
   void do_window(double end);
   [[nodiscard]] bool any_failed() const;
@@ -59,7 +61,7 @@ class IsaEngine final : public Engine {
   Array<ColdRecord> kept_cold_;
   Tally kept_tally_;
   double kept_now_ = 0;
-  unsigned windows_since_kept_ = 0;
+  unsigned windows_since_kept_ = 0, windows_between_copies_ = 1;
   std::uint64_t windows_done_ = 0, undone_ = 0;  // since the disks were loaded
 };
 

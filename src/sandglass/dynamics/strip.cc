@@ -8,6 +8,8 @@
 //  5. Two disks that overlap or touch are in each other's lists; lists are symmetric.
 #include "sandglass/dynamics/strip.h"
 
+#include <cassert>
+
 #include "sandglass/dynamics/epoch.h"
 
 namespace sandglass {
@@ -39,8 +41,7 @@ void Strip::run(double end) {
   auto soon = [this](std::uint32_t i) { fetch_neighbours(i); };
   auto pop = [&] { return calendar_.pop(records_, end_, in_order, ahead, soon); };
   for (std::uint32_t i = pop(); i != no_disk; i = pop()) {
-    if (!owns(i)) [[unlikely]]
-      continue;  // an entry from long ago; the disk has gone to another strip
+    assert(owns(i));
     const Record& disk = records_[i];
     const double t = disk.next_time;
     if (--until_stall_check_ == 0) [[unlikely]]

@@ -15,9 +15,8 @@ namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
 void IsaEngine::run(double end) {
-  constexpr unsigned windows_between_copies = 24;
   while (state_.now < end && strips_ > 1) {
-    if (windows_since_kept_ == windows_between_copies) keep();
+    if (windows_since_kept_ == windows_between_copies_) keep();
     const double windows = std::ceil((end - state_.now) / window_length());
     do_window(windows > 1 ? state_.now + (end - state_.now) / windows : end);
   }
@@ -48,16 +47,17 @@ void IsaEngine::divide() {
   first_ = std::make_unique<Strip[]>(n);
   shifted_ = std::make_unique<Strip[]>(n);
   lanes_ = std::make_unique<Rows[]>(n);
-  keep();
-  const double lead = mean_lead();
   auto border = [&](std::uint32_t s) { return static_cast<std::uint32_t>(std::uint64_t{s} * side / n); };
   auto middle = [&](std::uint32_t s) { return (border(s) + border(s + 1)) / 2; };
   const std::size_t between = tables_.size * 2 * lane / side;  // about as many disks are frozen around a lane
+  // A disk that goes from one strip to the next has been frozen in every window on its way through the lane.
+  const double windows = (whole_.neighbours().grid().height(lane) - 2 * tables_.leash) / way();
+  windows_between_copies_ = windows < 24 ? windows > 1 ? static_cast<unsigned>(windows) : 1 : 24;
+  look_for_top_speed();
   const double window = window_length();
   for (std::uint32_t s = 0; s < n; ++s) {
     const std::uint32_t from = border(s) - lane / 2 + lane, to = border(s + 1) - lane / 2;
     first_[s] = Strip(tables_, {from, to - from, side}, reach_, lane);
-    first_[s].set_calendar(calendar_for(lead, tables_.size / n));
     lanes_[s] = {(border(s) + side - lane / 2) % side, lane, side};
     const std::uint32_t below = (s == 0 ? middle(n - 1) : middle(s - 1) + side) - wide_lane / 2 + wide_lane;
     const std::uint32_t above = middle(s) + side - wide_lane / 2;
@@ -66,24 +66,19 @@ void IsaEngine::divide() {
   }
   whole_.set_calendar(Calendar(state_.now, window, window / 16, between, tables_.size));
   replenish();
-  for (std::uint32_t i = 0; i < tables_.size; ++i) {
-    const Record& disk = tables_.records[i];
-    if (disk.next_time == never || disk.next == Next::contact_entered_by_partner) continue;
-    for (std::uint32_t s = 0; s < n; ++s)
-      if (first_[s].owns(i)) first_[s].enter_calendar(i);
-  }
+  keep();
 }
 
 /// Lists hold what can be met while the fastest disk flies window_part() skins (see make_lists).
 double IsaEngine::window_length() const {
   const double fastest = std::fmax(top_speed_[small], top_speed_[big]);
-  return std::fmin(window_part() * tables_.neighbours.skin / fastest, state_.epoch_length);
+  return std::fmin(way() / fastest, state_.epoch_length);
 }
 
 void IsaEngine::do_window(double end) {
   const std::uint32_t n = strips_;
   const double start = state_.now;
-  tables_.window = {start, end, {top_speed_[small], top_speed_[big]}, window_part() * tables_.neighbours.skin};
+  tables_.window = {start, end, {top_speed_[small], top_speed_[big]}, way()};
   whole_.log = strip_log(2 * n);
   for (std::uint32_t s = 0; s < n; ++s) first_[s].log = strip_log(s), shifted_[s].log = strip_log(n + s);
 
@@ -126,13 +121,9 @@ bool IsaEngine::any_failed() const {
   return any;
 }
 
-/// Keeps the disks as they are, for undo, and sees how fast they are: a frozen disk is trusted not to be faster than
-/// six thermal speeds, beyond which there is one in 10^8, nor than the fastest of all now.
-void IsaEngine::keep() {
-  if (kept_records_.size() != tables_.size) {
-    kept_records_ = Array<Record>(tables_.size);
-    kept_cold_ = Array<ColdRecord>(tables_.size);
-  }
+/// A frozen disk is trusted not to be faster than six thermal speeds, beyond which there is one in 10^8, nor than the
+/// fastest of all now.
+void IsaEngine::look_for_top_speed() {
   struct alignas(64) Part {
     double energy, fastest[species_count];  // fastest: squares
   };
@@ -141,18 +132,13 @@ void IsaEngine::keep() {
   crew->work(strips_, [&](unsigned s) {
     Part part{0, {0, 0}};
     for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i) {
-      const Record& disk = kept_records_[i] = tables_.records[i];
-      kept_cold_[i] = tables_.cold[i];
+      const Record& disk = tables_.records[i];
       const double square = disk.vx * disk.vx + disk.vy * disk.vy;
       part.energy += state_.mixture.mass[disk.species] * square / 2;
       part.fastest[disk.species] = std::fmax(part.fastest[disk.species], square);
     }
     parts[s] = part;
   });
-  kept_tally_ = state_.tally;
-  kept_now_ = state_.now;
-  windows_since_kept_ = 0;
-
   double energy = 0;
   for (const Part& part : parts) energy += part.energy;
   for (const int species : {small, big}) {
@@ -162,6 +148,30 @@ void IsaEngine::keep() {
     top_speed_[species] = caution_ * (tuning_.top_speed > 0 ? tuning_.top_speed * thermal
                                                             : std::fmax(6.25 * thermal, 1.1 * std::sqrt(fastest)));
   }
+}
+
+/// Keeps the disks as they are, for undo. The calendars are made anew, before a disk that has an entry in one can have
+/// gone through a lane to another strip.
+void IsaEngine::keep() {
+  look_for_top_speed();
+  const std::size_t size = tables_.size, threads = strips_;
+  if (kept_records_.size() != size) {
+    kept_records_ = Array<Record>(size);
+    kept_cold_ = Array<ColdRecord>(size);
+  }
+  const double lead = mean_lead();
+  crew->work(strips_, [&](unsigned s) {
+    for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i) {
+      kept_records_[i] = tables_.records[i];
+      kept_cold_[i] = tables_.cold[i];
+    }
+    first_[s].remake_calendar(calendar_for(lead, size / threads));
+    shifted_[s].clear_outbox();
+  });
+  whole_.clear_outbox();
+  kept_tally_ = state_.tally;
+  kept_now_ = state_.now;
+  windows_since_kept_ = 0;
 }
 
 /// Goes back to the disks that were kept and does all up to `end` again on one thread; up to `start` it has been
