@@ -13,6 +13,7 @@
 #include "sandglass/core/version.h"
 #include "sandglass/prepare/insert.h"
 #include "sandglass/study/benchmark.h"
+#include "sandglass/study/summarise.h"
 
 namespace sandglass {
 namespace {
@@ -46,7 +47,7 @@ Arguments parse(int argc, char** argv, int& exit_code) {
       ->capture_default_str();
   app.add_option("--repeats", a.repeats, "stretches that are timed")->capture_default_str();
   app.add_option("--seed", a.seed, "seed of every random number")->capture_default_str();
-  app.add_option("--threads", a.threads, "accepted; one trajectory runs on one core in this version")
+  app.add_option("--threads", a.threads, "threads that share the work; fewer than asked for where more would not pay")
       ->capture_default_str();
   app.add_flag("--json", a.json, "print one JSON object instead of text");
   exit_code = -1;
@@ -94,7 +95,11 @@ std::vector<std::pair<std::string, double>> events_per_collision(const Benchmark
           {"transits", per(b.events.transits)},
           {"list_rebuilds", per(b.bookkeeping.list_rebuilds)},
           {"predictions", per(b.bookkeeping.predictions)},
-          {"orphans", per(b.bookkeeping.orphans)}};
+          {"orphans", per(b.bookkeeping.orphans)},
+          {"frozen", per(b.bookkeeping.frozen)},
+          {"left_over", per(b.bookkeeping.left_over)},
+          {"windows", per(b.bookkeeping.windows)},
+          {"windows_undone", per(b.bookkeeping.windows_undone)}};
 }
 
 void print_json(const Arguments& a, const Benchmark& b) {
@@ -133,7 +138,7 @@ void print_json(const Arguments& a, const Benchmark& b) {
                  {"collisions_per_disk", b.measured},
                  {"repeats", a.repeats},
                  {"seed", a.seed},
-                 {"threads", 1},
+                 {"threads", b.threads},
                  {"instruction_set", Simulation::instruction_set()},
                  {"version", version},
                  {"check", check}};
@@ -162,7 +167,8 @@ void print_text(const Arguments& a, const Benchmark& b) {
   line("memory",
        fmt::format("{:.0f} bytes per disk while running, {:.0f} at most", b.bytes_per_disk, b.peak_bytes_per_disk));
   line("temperature at the end", fmt::format("{:.4f}", b.temperature));
-  line("engine", fmt::format("sandglass {}, {}", version, Simulation::instruction_set()));
+  line("engine", fmt::format("sandglass {}, {}, {} thread{}", version, Simulation::instruction_set(), b.threads,
+                             b.threads == 1 ? "" : "s"));
   line("state", b.state_hash);
   for (const CheckedFigure& figure : b.check)
     fmt::print("  {} {}: {:.6g}, expected {:.6g} +- {:.2g}\n", figure.passed() ? "passed:" : "FAILED:", figure.quantity,
@@ -181,8 +187,8 @@ int bench_command(int argc, char** argv) {
     ProgressBar bar;
     benchmark = run_benchmark(plan, [&](std::string_view stage, double fraction) { bar.show(stage, fraction); });
   }
-  if (arguments.threads > 1)
-    fmt::print(stderr, "sandglass: one trajectory runs on one core in this version; --threads had no effect.\n");
+  if (benchmark.threads < arguments.threads)
+    fmt::print(stderr, "sandglass: {}\n", fewer_threads(plan.config, benchmark.threads));
   arguments.json ? print_json(arguments, benchmark) : print_text(arguments, benchmark);
   std::fflush(stdout);
   require_passed(benchmark.check);

@@ -44,6 +44,8 @@ class Array {
   [[nodiscard]] std::size_t bytes() const { return size_ * sizeof(T); }
   T* begin() { return data_; }
   T* end() { return data_ + size_; }
+  [[nodiscard]] const T* begin() const { return data_; }
+  [[nodiscard]] const T* end() const { return data_ + size_; }
 
   /// Makes room for `size` elements; what is there stays.
   [[gnu::noinline]] void enlarge(std::size_t size) {
@@ -79,6 +81,7 @@ class GrowingArray {
       grow();
     storage_[size_++] = value;
   }
+  void pop_back() { --size_; }
   void clear() { size_ = 0; }
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -86,6 +89,8 @@ class GrowingArray {
   [[gnu::always_inline]] const T& operator[](std::size_t i) const { return storage_[i]; }
   T* begin() { return storage_.begin(); }
   T* end() { return storage_.begin() + size_; }
+  [[nodiscard]] const T* begin() const { return storage_.begin(); }
+  [[nodiscard]] const T* end() const { return storage_.begin() + size_; }
 
  private:
   void grow() { storage_.enlarge(size_ < 64 ? 64 : size_ + size_ / 2); }

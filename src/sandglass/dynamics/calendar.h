@@ -22,9 +22,10 @@ inline namespace SANDGLASS_ISA {
 /// that costs more than the work.
 class Calendar {
  public:
-  /// `size` entries live at a time, `lead` ahead in the mean; a window is `window` long, from time `start` on.
-  Calendar(double start, double lead, double window, std::size_t size)
-      : start_(start), inverse_width_(1 / window), out_of_cache_(size > 20000) {
+  /// `size` entries live at a time, `lead` ahead in the mean; a window is `window` long, from time `start` on. There
+  /// are `disks` disks.
+  Calendar(double start, double lead, double window, std::size_t size, std::size_t disks)
+      : start_(start), inverse_width_(1 / window), out_of_cache_(disks > 20000) {
     while (keys_ < 16384 && static_cast<double>(keys_) * lead < 4 * static_cast<double>(size) * window) keys_ *= 2;
     std::size_t windows = 16;
     while (windows < 65536 && static_cast<double>(windows) * window < 4 * lead) windows *= 2;
@@ -42,6 +43,11 @@ class Calendar {
       enter_late(time, slot);
     else
       append(ahead <= ring_mask_ ? static_cast<std::size_t>(window & ring_mask_) : beyond(), time, slot);
+  }
+
+  /// Goes on from time t, after everything before it has been taken out and while nothing later is in.
+  void skip_to(double t) {
+    if (window_of(t) > window_) window_ = window_of(t);
   }
 
   /// Takes out and returns the slot whose event is the earliest and not after `limit`; no_disk if there is none.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sandglass/core/state.h"
+#include "sandglass/dynamics/crew.h"
 #include "sandglass/dynamics/event.h"
 #include "sandglass/dynamics/inspection.h"
 #include "sandglass/dynamics/simulation.h"
@@ -39,10 +40,23 @@ class Engine {
   /// Looks for what cannot be between two events. Changes nothing.
   virtual Inspection inspect() = 0;
 
+  /// How many threads it uses, once loaded.
+  [[nodiscard]] virtual unsigned threads() const = 0;
+
   virtual void make_frame(double* x, double* y, double* vx, double* vy) const = 0;
 
   std::vector<Event>* log = nullptr;
+  Crew* crew = nullptr;  ///< where several threads may be used
   Simulation::Bookkeeping bookkeeping;
+
+ protected:
+  /// The log of one of several strips, if there is a log; and all of them, in canonical order, into the log.
+  std::vector<Event>* strip_log(std::size_t strip);
+  void gather_strip_logs();
+  void drop_strip_logs();
+
+ private:
+  std::vector<std::vector<Event>> strip_logs_;
 };
 
 /// One per instruction set; all give the same bits. `state` must outlive the engine.

@@ -16,17 +16,77 @@ struct FixedPoint {
   std::uint32_t x, y;
 };
 
-/// Points with a name (slot and species), found by their place.
+/// One cache line of a cell. Lanes without a point have the name `empty`.
+struct alignas(64) Cell {
+  static constexpr std::uint32_t capacity = 5, empty = 0xffffffffu, slot_bits = 0x7fffffffu;
+  std::uint32_t x[capacity] = {}, y[capacity] = {};
+  std::uint32_t name[capacity] = {empty, empty, empty, empty, empty};  // slot, and the species in the highest bit
+  std::uint32_t more = 0;                                              // index of the cell's next line, or 0
+
+  [[nodiscard]] unsigned lanes_of(std::uint32_t wanted) const {
+    unsigned lanes = 0;
+    for (std::uint32_t lane = 0; lane < capacity; ++lane) lanes |= unsigned{name[lane] == wanted} << lane;
+    return lanes;
+  }
+};
+static_assert(sizeof(Cell) == 64);
+
+/// The memory of a grid: side * side first lines, row by row, then second and further lines, which are rare.
+struct GridTable {
+  GridTable() = default;
+  GridTable(double length, double cell_size) : box_length(length) {
+    const double cells = std::floor(length / cell_size);
+    side = cells < 1 ? 1 : cells > 32768 ? 32768 : static_cast<std::uint32_t>(cells);
+    used = side * side;
+    make_room(used + used / 8 + 64);
+  }
+
+  void make_room(std::size_t size) {
+    const std::size_t before = lines.size();
+    lines.enlarge(size);
+    for (std::size_t i = before; i < size; ++i) lines[i] = Cell();
+  }
+
+  double box_length = 0;
+  std::uint32_t side = 1;  // cells along one side of the box
+  std::uint32_t used = 0;  // lines that belong to a cell, or to a Grid that may use them
+  Array<Cell> lines;
+};
+
+/// Points with a name (slot and species), found by their place. Every thread has a Grid of its own on the one table;
+/// what two of them change at a time must lie in different cells.
 class Grid {
  public:
   Grid() = default;
-  Grid(double box_length, double cell_size) : unit_(box_length * 0x1p-32), per_unit_(0x1p32 / box_length) {
-    const double cells = std::floor(box_length / cell_size);
-    side_ = cells < 1 ? 1 : cells > 32768 ? 32768 : static_cast<std::uint32_t>(cells);
-    cells_ = GrowingArray<Cell>(std::size_t{side_} * side_);
-    cells_.reserve(cells_.size() + cells_.size() / 8 + 64);  // second lines are rare
-    for (Cell& cell : cells_) cell = Cell();
+  explicit Grid(GridTable& table)
+      : unit_(table.box_length * 0x1p-32),
+        per_unit_(0x1p32 / table.box_length),
+        side_(table.side),
+        table_(&table),
+        cells_(table.lines.begin()) {}
+
+  /// Cells along one side of the box.
+  [[nodiscard]] std::uint32_t side() const { return side_; }
+  [[nodiscard]] std::uint32_t row_of(FixedPoint at) const { return line_of(at.y); }
+
+  /// How many rows from the edge of a row on a search from beyond that edge may look.
+  [[nodiscard]] std::uint32_t rows_within(double radius) const {
+    return static_cast<std::uint32_t>((radius * per_unit_ + 2) * side_ * 0x1p-32) + 1;
   }
+
+  /// Takes `count` unused lines for the cells that will need a second one. Other Grids must be told (refresh).
+  void take_lines(std::uint32_t count) {
+    if (table_->used + count > table_->lines.size())
+      table_->make_room(table_->used + count + table_->lines.size() / 16);
+    spare_ = table_->used;
+    table_->used += count;
+    spare_end_ = table_->used;
+    refresh();
+  }
+  [[nodiscard]] std::uint32_t spare_lines() const { return spare_end_ - spare_; }
+
+  /// The table may have moved.
+  void refresh() { cells_ = table_->lines.begin(); }
 
   /// Length of a unit of the fixed point.
   [[nodiscard]] double unit() const { return unit_; }
@@ -48,9 +108,8 @@ class Grid {
         return;
       }
       if (cell.more == 0) {
-        const auto more = static_cast<std::uint32_t>(cells_.size());
-        cells_.push_back(Cell());
-        cells_[index].more = more;
+        if (spare_ == spare_end_) take_lines(64);
+        cells_[index].more = spare_++;
       }
     }
   }
@@ -100,22 +159,22 @@ class Grid {
     });
   }
 
+  /// The least distance of points that have `rows` rows between theirs.
+  [[nodiscard]] double height(std::uint32_t rows) const { return (0x1p32 / side_ * rows - 2) * unit_; }
+
+  /// Calls visit(slot) for every point in the rows from `row` on.
+  template <class Visit>
+  void visit_rows(std::uint32_t row, std::uint32_t count, Visit&& visit) const {
+    for (; count > 0; --count, row = row + 1 == side_ ? 0 : row + 1)
+      for (std::size_t column = 0; column < side_; ++column)
+        for (const Cell* cell = &cells_[row * side_ + column];; cell = &cells_[cell->more]) {
+          for (const std::uint32_t name : cell->name)
+            if (name != Cell::empty) visit(name & Cell::slot_bits);
+          if (cell->more == 0) break;
+        }
+  }
+
  private:
-  /// One cache line. Lanes without a point have the name `empty`.
-  struct alignas(64) Cell {
-    static constexpr std::uint32_t capacity = 5, empty = 0xffffffffu, slot_bits = 0x7fffffffu;
-    std::uint32_t x[capacity] = {}, y[capacity] = {};
-    std::uint32_t name[capacity] = {empty, empty, empty, empty, empty};  // slot, and the species in the highest bit
-    std::uint32_t more = 0;                                              // index of the cell's next line, or 0
-
-    [[nodiscard]] unsigned lanes_of(std::uint32_t wanted) const {
-      unsigned lanes = 0;
-      for (std::uint32_t lane = 0; lane < capacity; ++lane) lanes |= unsigned{name[lane] == wanted} << lane;
-      return lanes;
-    }
-  };
-  static_assert(sizeof(Cell) == 64);
-
   /// A circle by species around a point.
   struct Reach {
     FixedPoint at;
@@ -205,8 +264,10 @@ class Grid {
   }
 
   double unit_ = 0, per_unit_ = 0;
-  std::uint32_t side_ = 1;  // cells along one side of the box
-  GrowingArray<Cell> cells_;
+  std::uint32_t side_ = 1;
+  std::uint32_t spare_ = 0, spare_end_ = 0;  // lines for this Grid to use
+  GridTable* table_ = nullptr;
+  Cell* cells_ = nullptr;
   Array<std::uint32_t> found_;
 };
 

@@ -7,61 +7,86 @@ namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
 OverlappingPair IsaEngine::load(const std::uint32_t* order) {
-  size_ = state_.disks.size();
-  until_stall_check_ = 1;
-  progress_time_ = -never;
-  const Disk* const disks = state_.disks.data();
-  if (cold_.size() != size_) {
-    records_ = Array<Record>(size_ + 1);
-    cold_ = Array<ColdRecord>(size_);
+  const std::size_t size = state_.disks.size();
+  tables_.size = size;
+  if (tables_.cold.size() != size) {
+    tables_.records = Array<Record>(size + 1);
+    tables_.cold = Array<ColdRecord>(size);
     // Fills the empty places of neighbour lists: every contact would come after what it has next.
-    records_[size_] = {0, 0, 0, 0, 0, -never, 0, no_disk, Next::review, small, 0};
+    tables_.records[size] = {0, 0, 0, 0, 0, frozen, 0, no_disk, Next::review, small, 0};
   }
-  neighbours_ = Neighbours(size_, box_, state_.mixture, default_skin(), default_cell_size());
-  leash_ = neighbours_.leash();
-  for (std::uint32_t i = 0; i < size_; ++i) {
-    const Disk& disk = disks[order[i]];
-    records_[i] = {disk.x,  disk.y,       disk.vx,      disk.vy, disk.time, never, state_.mixture.radius[disk.species],
-                   no_disk, Next::review, disk.species, 0};
-    Record now = records_[i];
-    std::int32_t image_x = 0, image_y = 0;
-    advance(now, image_x, image_y, state_.now, box_);
-    cold_[i] = {.centre = neighbours_.grid().point(now.x, now.y),
-                .last_contact = disk.last_contact,
-                .next_kick = disk.next_kick,
-                .kick_count = disk.kick_count,
-                .image_x = disk.image_x,
-                .image_y = disk.image_y,
-                .id = order[i]};
+  for (std::uint32_t i = 0; i < size; ++i) {
+    const Disk& disk = state_.disks[order[i]];
+    tables_.records[i] = {
+        disk.x,  disk.y,       disk.vx,      disk.vy, disk.time, never, state_.mixture.radius[disk.species],
+        no_disk, Next::review, disk.species, 0};
+    tables_.cold[i] = {.centre = {},
+                       .last_contact = disk.last_contact,
+                       .next_kick = disk.next_kick,
+                       .kick_count = disk.kick_count,
+                       .image_x = disk.image_x,
+                       .image_y = disk.image_y,
+                       .id = order[i],
+                       .frozen_at = unconcerned};
   }
   state_.disks = std::vector<Disk>();  // gives the memory back
+  windows_done_ = undone_ = 0;
+  const OverlappingPair deepest = make_lists();
+  if (strips_ == 1)
+    make_calendar();
+  else
+    divide();
+  return deepest;
+}
 
+/// Lists and predictions for the records as they are. Returns the deepest overlap beyond rounding, if any.
+OverlappingPair IsaEngine::make_lists() {
+  Array<Record>& records = tables_.records;
+  tables_.neighbours = NeighbourTable(tables_.size, tables_.box, state_.mixture, default_skin(), default_cell_size());
+  const Neighbours neighbours(tables_.neighbours);
+  strips_ = strips_for_threads(neighbours);
+  tables_.leash = neighbours.leash();
+  if (strips_ > 1) tables_.leash -= window_part() * tables_.neighbours.skin / 2;
+  whole_.hand_in(state_.tally, bookkeeping);
+  whole_ = Strip(tables_);
+  whole_.log = log;
+  for (std::uint32_t i = 0; i < tables_.size; ++i) {
+    set_next(records[i], never, Next::review, no_disk);
+    records[i].neighbour_count = 0;
+    Flight now(records[i]);
+    std::int32_t image_x = 0, image_y = 0;
+    advance(now, image_x, image_y, state_.now, tables_.box);
+    tables_.cold[i].centre = whole_.neighbours().grid().point(now.x, now.y);
+    tables_.cold[i].frozen_at = unconcerned;
+  }
   OverlappingPair deepest;
-  for (std::uint32_t i = 0; i < size_; ++i) {
-    neighbours_.enter(i, cold_[i].centre, &records_[0]);
-    for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n) {
-      const std::uint32_t k = neighbours_.list(i)[n];
-      const double contact = records_[i].radius + records_[k].radius;
-      const double gap = surface_gap(records_[i], records_[k], contact, state_.now, box_);
-      if (gap < -1e-9 * contact && -gap > deepest.depth) deepest = {cold_[k].id, cold_[i].id, -gap};
+  for (std::uint32_t i = 0; i < tables_.size; ++i) {
+    whole_.enter_list(i);
+    for (std::uint32_t n = 0; n < records[i].neighbour_count; ++n) {
+      const std::uint32_t k = whole_.neighbours().list(i)[n];
+      const double contact = records[i].radius + records[k].radius;
+      const double gap = surface_gap(records[i], records[k], contact, state_.now, tables_.box);
+      if (gap < -1e-9 * contact && -gap > deepest.depth) deepest = {tables_.cold[k].id, tables_.cold[i].id, -gap};
     }
   }
-
   // First predictions into a calendar where nearly all is far ahead, only to learn how far that is.
-  calendar_ = Calendar(state_.now, 0, 1e-12 * state_.epoch_length, 0);
-  for (std::uint32_t i = 0; i < size_; ++i) predict(i);
-  const double lead = mean_lead();
-  calendar_ = Calendar(state_.now, lead, window_events() * lead / static_cast<double>(size_), size_);
-  for (std::uint32_t i = 0; i < size_; ++i)
-    if (records_[i].next_time < never) calendar_.push(records_[i].next_time, i);
+  whole_.set_calendar(Calendar(state_.now, 0, 1e-12 * state_.epoch_length, 0, 0));
+  for (std::uint32_t i = 0; i < tables_.size; ++i) whole_.predict(i);
   return deepest;
+}
+
+/// The calendar of all disks, where there is but one strip.
+void IsaEngine::make_calendar() {
+  whole_.set_calendar(calendar_for(mean_lead(), tables_.size));
+  for (std::uint32_t i = 0; i < tables_.size; ++i)
+    if (tables_.records[i].next_time < never) whole_.enter_calendar(i);
 }
 
 /// Width of the lists beyond contact: a circle of that range holds about eight centres at the given density.
 double IsaEngine::default_skin() const {
-  const double room = box_.length / 2 - 2 * largest_radius();  // wider, and nearest images would no longer be unique
+  const double room = 2 * tables_.box.transit;  // wider, and nearest images would no longer be unique
   if (tuning_.skin > 0) return std::fmin(tuning_.skin, room);
-  const double area_per_disk = box_.length * box_.length / static_cast<double>(size_);
+  const double area_per_disk = tables_.box.length * tables_.box.length / static_cast<double>(tables_.size);
   const double contact = state_.mixture.radius[small] + state_.mixture.radius[big];
   const double skin = std::sqrt(8 * area_per_disk / 3.14159) - contact;
   return std::fmin(std::fmax(skin, 0.2 * contact), room);
@@ -70,40 +95,47 @@ double IsaEngine::default_skin() const {
 /// Two disks to a cell, of the five that there is room for in a line of the grid.
 double IsaEngine::default_cell_size() const {
   if (tuning_.cell_size > 0) return tuning_.cell_size;
-  return box_.length * std::sqrt(2 / static_cast<double>(size_));
+  const double cell = tables_.box.length * std::sqrt(2 / static_cast<double>(tables_.size));
+  return cell;
 }
 
-/// Events in a window of the calendar. The larger, the more are entered into the open window, which is slower; the
-/// smaller, the more windows are being filled, and no longer fit into the cache.
-double IsaEngine::window_events() const {
-  if (tuning_.window_events > 0) return tuning_.window_events;
-  return std::fmin(std::fmax(2 * std::sqrt(static_cast<double>(size_)), 8), 4096);
+/// A calendar for `size` disks whose next events are `lead` ahead. The more events in a window, the more are entered
+/// into the open one, which is slower; the fewer, the more windows are being filled, and no longer fit into the cache.
+Calendar IsaEngine::calendar_for(double lead, std::size_t size) const {
+  const auto disks = static_cast<double>(size);
+  double events = std::fmin(std::fmax(2 * std::sqrt(disks), 8), 4096);
+  if (tuning_.window_events > 0) events = tuning_.window_events;
+  return Calendar(state_.now, lead, events * lead / disks, size, tables_.size);
 }
 
 /// About the mean time from now to a disk's next event, from the median over a sample of disks: the median of an
 /// exponential distribution is ln 2 of its mean.
 double IsaEngine::mean_lead() const {
-  const std::size_t step = size_ / 1024 + 1;
+  const std::size_t step = tables_.size / 1024 + 1;
   double low = 0, high = state_.epoch_length;
   for (int i = 0; i < 50; ++i) {
     const double middle = (low + high) / 2;
     std::size_t below = 0, all = 0;
-    for (std::size_t slot = 0; slot < size_; slot += step, ++all)
-      below += records_[slot].next_time - state_.now < middle;
+    for (std::size_t slot = 0; slot < tables_.size; slot += step, ++all)
+      below += tables_.records[slot].next_time - state_.now < middle;
     (2 * below < all ? low : high) = middle;
   }
   return std::fmax(high, 1e-9 * state_.epoch_length) / 0.69;
 }
 
 void IsaEngine::forget_what_comes() {
-  neighbours_ = Neighbours();
-  calendar_ = Calendar();
+  tables_.neighbours = NeighbourTable();
+  whole_ = Strip();
+  first_.reset();
+  shifted_.reset();
+  kept_records_ = {};
+  kept_cold_ = {};
 }
 
 void IsaEngine::store(Disk* disks) const {
-  for (std::size_t i = 0; i < size_; ++i) {
-    const Record& record = records_[i];
-    const ColdRecord& cold = cold_[i];
+  for (std::size_t i = 0; i < tables_.size; ++i) {
+    const Record& record = tables_.records[i];
+    const ColdRecord& cold = tables_.cold[i];
     Disk& disk = disks[cold.id];
     disk.x = record.x;
     disk.y = record.y;
@@ -120,12 +152,12 @@ void IsaEngine::store(Disk* disks) const {
 }
 
 void IsaEngine::make_frame(double* x, double* y, double* vx, double* vy) const {
-  for (std::size_t i = 0; i < size_; ++i) {
-    const Record& record = records_[i];
-    const ColdRecord& cold = cold_[i];
+  for (std::size_t i = 0; i < tables_.size; ++i) {
+    const Record& record = tables_.records[i];
+    const ColdRecord& cold = tables_.cold[i];
     const double flight = state_.now - record.time;
-    x[cold.id] = record.x + record.vx * flight + cold.image_x * box_.length;
-    y[cold.id] = record.y + record.vy * flight + cold.image_y * box_.length;
+    x[cold.id] = record.x + record.vx * flight + cold.image_x * tables_.box.length;
+    y[cold.id] = record.y + record.vy * flight + cold.image_y * tables_.box.length;
     vx[cold.id] = record.vx;
     vy[cold.id] = record.vy;
   }

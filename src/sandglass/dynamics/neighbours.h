@@ -12,26 +12,59 @@
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
-/// Every disk has a list centre, where it stood when its list was made. Two disks are in each other's lists exactly
-/// when their list centres are closer than R_i + R_j + skin. A disk's list expires when it has moved skin/2 from its
-/// centre; until then no disk outside the list can touch it. Lists are symmetric and hold slots.
-class Neighbours {
- public:
+/// The memory of the lists and of the grid of their centres.
+struct NeighbourTable {
   /// Lists are read by whole blocks: from their end to the end of the block they hold the slot `size`, of which the
   /// engine keeps a record that nothing ever touches.
   static constexpr std::uint32_t block = 8;
 
-  Neighbours() = default;
-  Neighbours(std::size_t size, const Box& box, const Mixture& mixture, double skin, double cell_size)
-      : mixture_(mixture),
-        grid_(box.length, cell_size),
-        skin_(skin),
-        nobody_(static_cast<std::uint32_t>(size)),
-        lists_(size * stride_) {
-    for (std::uint32_t& entry : lists_) entry = nobody_;
+  NeighbourTable() = default;
+  NeighbourTable(std::size_t size, const Box& box, const Mixture& mixture_, double skin_, double cell_size)
+      : mixture(mixture_), skin(skin_), nobody(static_cast<std::uint32_t>(size)), grid(box.length, cell_size) {
+    lists = Array<std::uint32_t>(size * stride);
+    for (std::uint32_t& entry : lists) entry = nobody;
   }
 
+  Mixture mixture;
+  double skin = 0;
+  std::uint32_t nobody = 0;
+  std::uint32_t stride = 2 * block;  // room in each list
+  Array<std::uint32_t> lists;
+  GridTable grid;
+};
+
+/// Every disk has a list centre, where it stood when its list was made. Two disks are in each other's lists exactly
+/// when their list centres are closer than R_i + R_j + skin. A disk's list expires when it has moved skin/2 from its
+/// centre; until then no disk outside the list can touch it. Lists are symmetric and hold slots.
+/// Every thread has a Neighbours of its own on the one table.
+class Neighbours {
+ public:
+  static constexpr std::uint32_t block = NeighbourTable::block;
+
+  Neighbours() = default;
+  explicit Neighbours(NeighbourTable& table)
+      : mixture_(table.mixture),
+        grid_(table.grid),
+        skin_(table.skin),
+        nobody_(table.nobody),
+        stride_(table.stride),
+        table_(&table),
+        lists_(table.lists.begin()) {}
+
   [[nodiscard]] const Grid& grid() const { return grid_; }
+  [[nodiscard]] Grid& grid() { return grid_; }
+
+  /// The farthest that the list centre of a listed disk may be; 1e-5: distances are taken in single precision.
+  [[nodiscard]] double longest_range() const {
+    return (1 + 1e-5) * std::fmax(range(mixture_.radius[big], big), range(mixture_.radius[small], small));
+  }
+
+  /// The tables may have moved.
+  void refresh() {
+    grid_.refresh();
+    lists_ = table_->lists.begin();
+    stride_ = table_->stride;
+  }
 
   /// How far a disk may move from its list centre: half the skin, less room for what the grid rounds.
   [[nodiscard]] double leash() const {
@@ -54,11 +87,16 @@ class Neighbours {
   }
 
   /// Makes the list of a disk anew around another centre, and enters it into or strikes it from the lists of those who
-  /// come or go.
-  void renew(std::uint32_t slot, FixedPoint old, FixedPoint at, Record* records) {
+  /// come or go. Where the tables are too small they are enlarged; but if they may not move (`fixed`), nothing is done
+  /// and the answer is false.
+  bool renew(std::uint32_t slot, FixedPoint old, FixedPoint at, Record* records, bool fixed = false) {
     grid_.displace(slot, old, records[slot].species);
     const Grid::Slots found = find(at, records[slot]);
     const std::uint32_t before = records[slot].neighbour_count;
+    if (fixed && !have_room(found, records)) [[unlikely]] {
+      grid_.place(slot, old, records[slot].species);
+      return false;
+    }
     while (found.count > stride_) [[unlikely]] widen();
     if (before + found.count > changes_.size()) [[unlikely]]
       changes_ = Array<std::uint32_t>(2 * (before + found.count));
@@ -79,6 +117,7 @@ class Neighbours {
     for (std::uint32_t n = 0; n < gone; ++n) remove(goers[n], slot, records);
     for (std::uint32_t n = 0; n < came; ++n) add(changes_[n], slot, records);
     grid_.place(slot, at, records[slot].species);
+    return true;
   }
 
   /// Whether the list of a disk, whose list centre is `at`, names everybody whose list centre is within range, and
@@ -111,6 +150,13 @@ class Neighbours {
     return lanes != 0;
   }
 
+  /// Whether the tables have room for a list of `found`, whoever of them may be new.
+  [[nodiscard]] bool have_room(const Grid::Slots& found, const Record* records) const {
+    bool room = found.count <= stride_ && grid_.spare_lines() > 0;
+    for (std::uint32_t n = 0; n < found.count; ++n) room &= records[found.first[n]].neighbour_count < stride_;
+    return room;
+  }
+
   void add(std::uint32_t slot, std::uint32_t other, Record* records) {
     std::uint16_t& count = records[slot].neighbour_count;
     if (count == stride_) [[unlikely]]
@@ -132,21 +178,23 @@ class Neighbours {
   // A list is full (a big disk among small ones): give every list more room.
   [[gnu::noinline]] void widen() {
     const std::uint32_t wider = stride_ + block;
-    const std::size_t size = lists_.size() / stride_;
+    const std::size_t size = table_->lists.size() / stride_;
     Array<std::uint32_t> lists(size * wider);
     for (std::size_t slot = 0; slot < size; ++slot)
       for (std::uint32_t i = 0; i < wider; ++i)
         lists[slot * wider + i] = i < stride_ ? lists_[slot * stride_ + i] : nobody_;
-    lists_ = std::move(lists);
-    stride_ = wider;
+    table_->lists = std::move(lists);
+    table_->stride = wider;
+    refresh();
   }
 
   Mixture mixture_;
   Grid grid_;
   double skin_ = 0;
   std::uint32_t nobody_ = 0;
-  std::uint32_t stride_ = 2 * block;  // room in each list
-  Array<std::uint32_t> lists_;
+  std::uint32_t stride_ = 2 * block;
+  NeighbourTable* table_ = nullptr;
+  std::uint32_t* lists_ = nullptr;
   Array<std::uint32_t> changes_ = Array<std::uint32_t>(64);
 };
 

@@ -1,15 +1,15 @@
 // Whom a kick's counter-kick goes to.
 #include <cmath>
 
-#include "sandglass/dynamics/isa_engine.h"
 #include "sandglass/dynamics/simd.h"
+#include "sandglass/dynamics/strip.h"
 
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
 #ifdef SANDGLASS_SIMD
 /// surface_gap to one block of a list, lane by lane, the same operations in the same order: the smallest, and where.
-Smallest IsaEngine::smallest_gap(const Record& disk, const std::uint32_t* list, double t) const {
+Smallest Strip::smallest_gap(const Record& disk, const std::uint32_t* list, double t) const {
   const double flight = t - disk.time;
   const Vector x = Vector::all(std::fma(disk.vx, flight, disk.x)), y = Vector::all(std::fma(disk.vy, flight, disk.y));
   const Vector length = Vector::all(box_.length), inverse = Vector::all(box_.inverse);
@@ -30,7 +30,7 @@ Smallest IsaEngine::smallest_gap(const Record& disk, const std::uint32_t* list, 
 #endif
 
 /// The disk with the smallest gap of surfaces to disk i at time t; the smaller id at equal gaps.
-std::uint32_t IsaEngine::nearest_partner(std::uint32_t i, double t) {
+std::uint32_t Strip::nearest_partner(std::uint32_t i, double t) {
   const Record& disk = records_[i];
   double best_gap = never;
   std::uint32_t best = no_disk;
@@ -63,7 +63,7 @@ std::uint32_t IsaEngine::nearest_partner(std::uint32_t i, double t) {
   const double moved = std::sqrt(dx * dx + dy * dy);
   if (best_gap < leash_ - moved) return best;
 
-  ++bookkeeping.wide_partner_searches;
+  ++bookkeeping_.wide_partner_searches;
   const double margin = disk.radius + largest_radius() + leash_ + 1e-9;
   for (double radius = margin + 2 * leash_;; radius *= 1.5) {
     if (best != no_disk && best_gap + margin < radius) radius = best_gap + margin;
@@ -74,16 +74,16 @@ std::uint32_t IsaEngine::nearest_partner(std::uint32_t i, double t) {
 
 /// One of the disks whose centres are within reach * (R_i + R_j) of disk i at time t, picked by the kick's own random
 /// number in the order of ids; no_disk if there are none.
-std::uint32_t IsaEngine::partner_within_reach(std::uint32_t i, double t, const Kick& kick) {
+std::uint32_t Strip::partner_within_reach(std::uint32_t i, double t, const Kick& kick) {
   const Record& disk = records_[i];
   candidates_.clear();
   auto visit = [&](std::uint32_t k) {
     if (k == i) return;
-    if (!within_reach(disk, records_[k], disk.radius + records_[k].radius, state_.drive.reach, t, box_)) return;
+    if (!within_reach(disk, records_[k], disk.radius + records_[k].radius, tables_->state.drive.reach, t, box_)) return;
     candidates_.push_back({cold_[k].id, k});
   };
   const double x = std::fma(disk.vx, t - disk.time, disk.x), y = std::fma(disk.vy, t - disk.time, disk.y);
-  const double radius = state_.drive.reach * (disk.radius + largest_radius()) + leash_ + 1e-9;
+  const double radius = tables_->state.drive.reach * (disk.radius + largest_radius()) + leash_ + 1e-9;
   neighbours_.grid().visit_near(x, y, radius, visit);
   if (candidates_.empty()) return no_disk;
   return nth_by_id(candidates_.begin(), candidates_.end(), kick.pick(candidates_.size())).slot;

@@ -1,42 +1,50 @@
 // What comes next for a disk: its earliest contact, kick, transit or list expiry.
 #include <cmath>
 
-#include "sandglass/dynamics/isa_engine.h"
 #include "sandglass/dynamics/simd.h"
+#include "sandglass/dynamics/strip.h"
 
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
 /// Predicts what comes next for disk i, whose flight or list is new.
-void IsaEngine::predict(std::uint32_t i) { schedule(i, earliest_contact(i)); }
+void Strip::predict(std::uint32_t i) { schedule(i, earliest_contact(i)); }
 
 /// The same after a search that was begun before other disks were settled.
-void IsaEngine::settle(std::uint32_t i, Lanes begun) {
+void Strip::settle(std::uint32_t i, Lanes begun) {
   Foreseen contact = earliest_of_blocks(i, begun);
   if (contact.partner != no_disk && !comes_before_next_of(records_[contact.partner], contact.time, i)) [[unlikely]]
     contact = earliest_contact(i);
   schedule(i, contact);
 }
 
+/// Enters what comes next for disk i into the calendar.
+[[gnu::always_inline]] inline void Strip::enter_event(double t, std::uint32_t i) {
+  if (t > outbox_from_) [[unlikely]]
+    outbox_.push_back({t, i});
+  else
+    calendar_.push(t, i);
+}
+
 /// Disk i has lost the partner of its contact. It looks for another when the contact would have come: whoever meets it
 /// before will have found it.
-void IsaEngine::part(std::uint32_t i) {
-  ++bookkeeping.orphans;
+void Strip::part(std::uint32_t i) {
+  ++bookkeeping_.orphans;
   Record& disk = records_[i];
-  if (disk.next == Next::contact_entered_by_partner) calendar_.push(disk.next_time, i);
+  if (disk.next == Next::contact_entered_by_partner) enter_event(disk.next_time, i);
   disk.next = Next::review;
   disk.partner = no_disk;
 }
 
 /// Whether a contact at time t of disk i with `other` comes before what `other` has next, in canonical order: contacts
 /// come before anything else at the same time, and among contacts of one disk that with the smaller id comes first.
-bool IsaEngine::comes_before_next_of(const Record& other, double t, std::uint32_t i) const {
+bool Strip::comes_before_next_of(const Record& other, double t, std::uint32_t i) const {
   if (t != other.next_time) return t < other.next_time;
   return other.partner == no_disk || other.partner == i || cold_[i].id < cold_[other.partner].id;
 }
 
 /// By the rule, one by one.
-IsaEngine::Foreseen IsaEngine::earliest_contact_by_rule(std::uint32_t i) const {
+Strip::Foreseen Strip::earliest_contact_by_rule(std::uint32_t i) const {
   Foreseen earliest{never, no_disk};
   const Record& disk = records_[i];
   const std::uint32_t* const list = neighbours_.list(i);
@@ -53,9 +61,9 @@ IsaEngine::Foreseen IsaEngine::earliest_contact_by_rule(std::uint32_t i) const {
 #ifdef SANDGLASS_SIMD
 
 /// One block of the list: contact_time, lane by lane, the same operations in the same order.
-[[gnu::always_inline]] inline IsaEngine::Lanes IsaEngine::contacts_of_block(const Flight& disk, double disk_radius,
-                                                                            const std::uint32_t* list,
-                                                                            std::uint32_t except) const {
+[[gnu::always_inline]] inline Strip::Lanes Strip::contacts_of_block(const Flight& disk, double disk_radius,
+                                                                    const std::uint32_t* list,
+                                                                    std::uint32_t except) const {
   const Vector x = Vector::all(disk.x), y = Vector::all(disk.y), vx = Vector::all(disk.vx), vy = Vector::all(disk.vy);
   const Vector time = Vector::all(disk.time), radius = Vector::all(disk_radius);
   const Vector length = Vector::all(box_.length), inverse = Vector::all(box_.inverse), zero = Vector::all(0);
@@ -81,12 +89,12 @@ IsaEngine::Foreseen IsaEngine::earliest_contact_by_rule(std::uint32_t i) const {
   return {soonest, (candidate == Vector::all(soonest)).lanes(), (candidate < other[5]).lanes()};
 }
 
-IsaEngine::Lanes IsaEngine::first_contacts(std::uint32_t i, const Flight& flight, std::uint32_t except) const {
+Strip::Lanes Strip::first_contacts(std::uint32_t i, const Flight& flight, std::uint32_t except) const {
   return contacts_of_block(flight, records_[i].radius, neighbours_.list(i), except);
 }
 
 /// The earliest of all blocks, the first of which is done.
-IsaEngine::Foreseen IsaEngine::earliest_of_blocks(std::uint32_t i, Lanes lanes) const {
+Strip::Foreseen Strip::earliest_of_blocks(std::uint32_t i, Lanes lanes) const {
   Foreseen earliest{never, no_disk};
   const Record& disk = records_[i];
   const std::uint32_t* list = neighbours_.list(i);
@@ -108,19 +116,19 @@ IsaEngine::Foreseen IsaEngine::earliest_of_blocks(std::uint32_t i, Lanes lanes) 
 
 #else
 
-IsaEngine::Lanes IsaEngine::first_contacts(std::uint32_t, const Flight&, std::uint32_t) const { return {}; }
-IsaEngine::Foreseen IsaEngine::earliest_of_blocks(std::uint32_t i, Lanes) const { return earliest_contact_by_rule(i); }
+Strip::Lanes Strip::first_contacts(std::uint32_t, const Flight&, std::uint32_t) const { return {}; }
+Strip::Foreseen Strip::earliest_of_blocks(std::uint32_t i, Lanes) const { return earliest_contact_by_rule(i); }
 
 #endif
 
-IsaEngine::Foreseen IsaEngine::earliest_contact(std::uint32_t i) const {
+Strip::Foreseen Strip::earliest_contact(std::uint32_t i) const {
   return earliest_of_blocks(i, first_contacts(i, Flight(records_[i]), no_disk));
 }
 
 /// Settles what comes next for disk i, given its earliest contact, and enters it into the calendar. A contact is taken
 /// only if it also comes before what the other disk has next; both may have to part from others.
-void IsaEngine::schedule(std::uint32_t i, Foreseen contact) {
-  ++bookkeeping.predictions;
+void Strip::schedule(std::uint32_t i, Foreseen contact) {
+  ++bookkeeping_.predictions;
   Record& disk = records_[i];
   const ColdRecord& cold = cold_[i];
   double t = contact.time;
@@ -129,6 +137,8 @@ void IsaEngine::schedule(std::uint32_t i, Foreseen contact) {
     if (time < t) t = time, next = what;
   };
   consider(cold.next_kick, Next::kick);
+  if (cold.frozen_at != unconcerned) [[unlikely]]
+    consider(freezing_time(i), Next::freeze);
   // Expiry and transit cost a root and divisions; most often it is plain that they do not come first.
   if (!within_leash(disk, cold, t)) consider(list_expiry(disk, cold), Next::review);
   const double speed_x = std::fabs(disk.vx), speed_y = std::fabs(disk.vy);
@@ -144,11 +154,11 @@ void IsaEngine::schedule(std::uint32_t i, Foreseen contact) {
     set_next(other, t, Next::contact_entered_by_partner, i);
   }
   set_next(disk, t, next, next == Next::contact ? contact.partner : no_disk);
-  calendar_.push(t, i);
+  enter_event(t, i);
 }
 
 /// Whether the disk, flying freely, is still plainly within the leash of its list centre at time t.
-bool IsaEngine::within_leash(const Record& disk, const ColdRecord& cold, double t) const {
+bool Strip::within_leash(const Record& disk, const ColdRecord& cold, double t) const {
   const Grid& grid = neighbours_.grid();
   const double flight = t - disk.time;
   const double dx = grid.offset(cold.centre.x, disk.x) + disk.vx * flight;
@@ -158,7 +168,7 @@ bool IsaEngine::within_leash(const Record& disk, const ColdRecord& cold, double 
 
 /// When the disk, flying freely, leaves the circle of its leash: the later root, since its record may be older than its
 /// list and lie outside on the other side.
-double IsaEngine::list_expiry(const Record& disk, const ColdRecord& cold) const {
+double Strip::list_expiry(const Record& disk, const ColdRecord& cold) const {
   const Grid& grid = neighbours_.grid();
   const double dx = grid.offset(cold.centre.x, disk.x), dy = grid.offset(cold.centre.y, disk.y);
   const double vv = disk.vx * disk.vx + disk.vy * disk.vy;

@@ -10,17 +10,17 @@ struct PredictionPerf {
   /// Nothing comes next for disk i and its partner, as when they have just collided. (A contact that stands in both
   /// records already would be found twice, and that is a rare case of its own.)
   static void forget_contact(IsaEngine& engine, std::uint32_t i) {
-    Record& disk = engine.records_[i];
-    if (disk.partner != no_disk) set_next(engine.records_[disk.partner], never, Next::review, no_disk);
+    Record& disk = engine.tables_.records[i];
+    if (disk.partner != no_disk) set_next(engine.tables_.records[disk.partner], never, Next::review, no_disk);
     set_next(disk, never, Next::review, no_disk);
   }
 
   static void search(benchmark::State& state, IsaEngine& engine) {
-    const auto size = static_cast<std::uint32_t>(engine.size_);
+    const auto size = static_cast<std::uint32_t>(engine.tables_.size);
     for (std::uint32_t i = 0; i < size; i += searched) forget_contact(engine, i);
     std::uint32_t i = 0;
     for (auto _ : state) {
-      benchmark::DoNotOptimize(engine.earliest_contact(i).time);
+      benchmark::DoNotOptimize(engine.whole_.earliest_contact(i).time);
       i += searched;
       if (i >= size) i = 0;
     }

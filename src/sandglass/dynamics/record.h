@@ -16,9 +16,10 @@ namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
 /// What comes next for a disk, in the order in which it is done at one time: a review (no event: its list expires, or
-/// the partner of a foreseen contact has found another, and its next contact must be looked for again), or the physical
-/// EventKind of the same name. The calendar has one entry for a contact, under the slot of one of the two disks.
-enum class Next : std::uint8_t { review, contact, contact_entered_by_partner, kick, transit };
+/// the partner of a foreseen contact has found another, and its next contact must be looked for again), freezing (where
+/// several threads work, see freezing.cc), or the physical EventKind of the same name. The calendar has one entry for a
+/// contact, under the slot of one of the two disks.
+enum class Next : std::uint8_t { review, freeze, contact, contact_entered_by_partner, kick, transit };
 
 /// The hot half: the flight, and what comes next. A contact stands in the records of both its disks.
 struct alignas(64) Record {
@@ -53,6 +54,16 @@ struct Flight {
   set_next(disk, std::numeric_limits<double>::infinity(), Next::review, no_disk);
 }
 
+/// A frozen disk has this as the time of its next event: no search finds a contact with it, since that would come
+/// later.
+inline constexpr double frozen = -std::numeric_limits<double>::infinity();
+
+[[gnu::always_inline]] inline bool is_frozen(const Record& disk) { return disk.next_time == frozen; }
+
+/// For ColdRecord::frozen_at: a disk that no frozen one can reach, and one that must look out for them.
+inline constexpr float unconcerned = std::numeric_limits<float>::infinity();
+inline constexpr float concerned = std::numeric_limits<float>::max();
+
 /// The cold half.
 struct ColdRecord {
   FixedPoint centre;  ///< where the disk stood when its list was made
@@ -60,6 +71,7 @@ struct ColdRecord {
   std::uint64_t kick_count;
   std::int32_t image_x, image_y;
   std::uint32_t id;
+  float frozen_at;  ///< when the disk was frozen, counted from the start of the window; or as above
 };
 static_assert(sizeof(ColdRecord) == 48);
 

@@ -43,6 +43,25 @@ DiskName nth_by_id(DiskName* first, DiskName* last, std::size_t n) {
   return first[n];
 }
 
+std::vector<Event>* Engine::strip_log(std::size_t strip) {
+  if (!log) return nullptr;
+  if (strip_logs_.size() <= strip) strip_logs_.resize(strip + 1);
+  return &strip_logs_[strip];
+}
+
+void Engine::gather_strip_logs() {
+  if (!log) return;
+  std::vector<Event> events;
+  for (const auto& strip : strip_logs_) events.insert(events.end(), strip.begin(), strip.end());
+  std::sort(events.begin(), events.end());
+  log->insert(log->end(), events.begin(), events.end());
+  drop_strip_logs();
+}
+
+void Engine::drop_strip_logs() {
+  for (auto& strip : strip_logs_) strip.clear();
+}
+
 void report_collapse(const State& state, double t) {
   const double time = static_cast<double>(state.epoch) * state.epoch_length + t;
   throw RunError("inelastic collapse at time " + std::to_string(time) +
@@ -52,6 +71,7 @@ void report_collapse(const State& state, double t) {
 
 struct Simulation::Run {
   State state;  // its disks are with the engine, except for a moment at epochs
+  std::unique_ptr<Crew> crew;
   std::unique_ptr<Engine> engine;
   std::size_t size = 0;
 
@@ -74,6 +94,10 @@ Simulation::Simulation(State state, const Tuning& tuning) : run_(std::make_uniqu
   check_start(state);
   run_->state = std::move(state);
   run_->engine.reset(choose_instruction_set().make_engine(run_->state, tuning));
+  if (tuning.threads > 1) {
+    run_->crew = std::make_unique<Crew>(tuning.threads);
+    run_->engine->crew = run_->crew.get();
+  }
   if (const std::string overlap = run_->load(); !overlap.empty())
     throw InputError(overlap + " (hard disks may not overlap): prepare the start at a lower packing fraction, or let " +
                      "the program prepare it");
@@ -106,6 +130,7 @@ double Simulation::time() const { return run_->state.time(); }
 const Tally& Simulation::tally() const { return run_->state.tally; }
 std::size_t Simulation::size() const { return run_->size; }
 bool Simulation::conserves_momentum() const { return run_->state.drive.kind != DriveKind::single; }
+unsigned Simulation::threads() const { return run_->engine->threads(); }
 
 State Simulation::state() const& {
   State copy = run_->state;

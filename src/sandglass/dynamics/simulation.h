@@ -17,7 +17,20 @@ struct Tuning {
   double skin = 0;           ///< width of the neighbour lists beyond contact, in R_s
   double cell_size = 0;      ///< least side of a cell of the look-up grid, in R_s
   double window_events = 0;  ///< events in a window of the calendar
+  unsigned threads = 1;      ///< at most; fewer where the box is too small for as many strips
+  // For tests of what several threads do:
+  std::uint32_t strip_rows = 0;  ///< least height of a strip, in rows of the grid
+  double window_part = 0;        ///< how far the fastest disk may fly in a window, in skins
+  double top_speed = 0;          ///< speed that a disk is trusted not to exceed, in thermal speeds sqrt(T/m)
 };
+
+/// With fewer disks one thread is faster than several: a window has too little work for its borders (docs/parallel.md).
+inline constexpr std::size_t least_disks_for_threads = 50000;
+
+/// Of the threads asked for, how many to use for a trajectory of so many disks.
+inline unsigned threads_for(std::size_t particles, std::uint64_t asked) {
+  return particles < least_disks_for_threads ? 1 : static_cast<unsigned>(asked);
+}
 
 /// Event-driven dynamics of a State. Neighbour lists find who may meet, a calendar finds who meets next.
 /// Throws InputError for a state that cannot be run exactly (overlap, box too small, disk outside the box, NaN).
@@ -35,6 +48,7 @@ class Simulation {
   [[nodiscard]] const Tally& tally() const;
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] bool conserves_momentum() const;  ///< single kicks do not
+  [[nodiscard]] unsigned threads() const;  ///< that are used, at most tuning.threads
 
   /// A copy of the run at this moment; a new Simulation made from it goes on with the same bits. A Simulation that is
   /// no longer needed (std::move) frees its tables first.
@@ -54,6 +68,9 @@ class Simulation {
   /// Work that is bookkeeping, not physics: how the engine's time was spent.
   struct Bookkeeping {
     std::uint64_t predictions = 0, orphans = 0, list_rebuilds = 0, wide_partner_searches = 0;
+    // Where several threads work: windows; disks frozen in them, by passes, those resumed in the last one alone;
+    // windows in which a frozen disk was faster than trusted, and which were done again.
+    std::uint64_t windows = 0, frozen = 0, left_over = 0, windows_undone = 0;
   };
   [[nodiscard]] Bookkeeping bookkeeping() const;
 

@@ -261,10 +261,12 @@ const std::vector<Key>& config_table() {
            .description = "Parts of the measured stretch whose averages give the standard errors; each is at least two "
                           "collisions per disk long.",
            .range = {1, 1e6}}),
-      key<&C::run, &C::Run::threads>({.name = "run.threads",
-                                      .description = "Threads; the results do not depend on it.",
-                                      .range = {1, 1024},
-                                      .physics = false}),
+      key<&C::run, &C::Run::threads>(
+          {.name = "run.threads",
+           .description =
+               "Threads for one trajectory, at most; fewer where more do not pay. The results do not depend on it.",
+           .range = {1, 1024},
+           .physics = false}),
       key<&C::run, &C::Run::max_walltime_seconds>(
           {.name = "run.max_walltime_seconds",
            .unit = "s",

@@ -143,8 +143,14 @@ double deepest_overlap_now(State state) {
 }
 
 Simulation::Bookkeeping difference(const Simulation::Bookkeeping& begin, const Simulation::Bookkeeping& end) {
-  return {end.predictions - begin.predictions, end.orphans - begin.orphans, end.list_rebuilds - begin.list_rebuilds,
-          end.wide_partner_searches - begin.wide_partner_searches};
+  return {end.predictions - begin.predictions,
+          end.orphans - begin.orphans,
+          end.list_rebuilds - begin.list_rebuilds,
+          end.wide_partner_searches - begin.wide_partner_searches,
+          end.windows - begin.windows,
+          end.frozen - begin.frozen,
+          end.left_over - begin.left_over,
+          end.windows_undone - begin.windows_undone};
 }
 
 /// What was counted between two tallies.
@@ -203,7 +209,8 @@ Benchmark run_benchmark(const BenchmarkPlan& plan, const Progress& progress) {
 
   evidence.start = state.tally;
   evidence.start_energy = kinetic_energy(state);
-  Simulation simulation(std::move(state));
+  Simulation simulation(std::move(state), {.threads = threads_for(config.system.particles, config.run.threads)});
+  result.threads = simulation.threads();
   const double rate = age_disks(simulation, plan.age, beat_of(config), progress);
   result.aged = collisions_per_disk(simulation);
   const Simulation::Bookkeeping before = simulation.bookkeeping();

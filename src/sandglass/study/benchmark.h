@@ -34,6 +34,7 @@ struct Benchmark {
   // Over the whole measured stretch: the timed parts and, between them, those in which the self-check looks on.
   Tally events;                         ///< counts; the sums are left out
   Simulation::Bookkeeping bookkeeping;  ///< what the engine did besides
+  unsigned threads = 1;                 ///< that worked on the trajectory
   double temperature = 0;               ///< at the end
   double bytes_per_disk = 0;            ///< memory that the process holds while it runs
   double peak_bytes_per_disk = 0;       ///< the most it ever held, preparation and self-check included

@@ -29,7 +29,7 @@ Calibrator::Calibrator(State start, const CalibrationGoal& goal)
     : goal_(goal),
       error_(goal.temperature_error > 0 ? goal.temperature_error : wanted_error(static_cast<double>(start.size()))),
       population_(population_of(start)),
-      simulation_(start),
+      simulation_(start, {.threads = goal.threads}),
       result_{.frequency = start.drive.frequency, .amplitude = start.drive.amplitude} {
   const double restitution = start.collision.restitution;
   const double relaxation = 4 / (3 * (1 - restitution * restitution));
@@ -97,7 +97,7 @@ void Calibrator::end_window() {
   if (done()) return;
   State state = simulation_.state();
   change_drive(state, result_.frequency, result_.amplitude);
-  simulation_ = Simulation(std::move(state));
+  resume_from(std::move(state));
 }
 
 std::vector<Field> Calibration::fields() {

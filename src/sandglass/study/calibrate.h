@@ -22,6 +22,7 @@ struct CalibrationGoal {
   double beat = 1;                    ///< one mean free time by the formula
   double settle = 0;                  ///< collisions per disk to age before calibrating (dense states)
   double temperature_error = 0;       ///< relative error of T to aim at; 0: 0.2 %, below N = 625 0.05 / sqrt(N)
+  unsigned threads = 1;
 };
 
 /// The values to freeze, and how well they are known.
@@ -56,7 +57,7 @@ class Calibrator {
 
   [[nodiscard]] Simulation& simulation() { return simulation_; }  ///< the copy that is run
   [[nodiscard]] std::vector<Field> fields();
-  void resume_from(State scratch) { simulation_ = Simulation(std::move(scratch)); }
+  void resume_from(State scratch) { simulation_ = Simulation(std::move(scratch), {.threads = goal_.threads}); }
 
  private:
   /// Mean and its standard error of the results of a few windows, in the order in which they came.

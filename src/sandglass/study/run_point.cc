@@ -123,6 +123,7 @@ class PointRun {
   RunFolder& folder_;
   const RunMonitor& monitor_;
   const double beat_;
+  const Tuning tuning_{.threads = threads_for(config_.system.particles, config_.run.threads)};
 
   std::optional<Calibrator> calibrator_;  // only while it is at work: afterwards there is the simulation
   std::optional<Simulation> simulation_;
@@ -179,6 +180,7 @@ void PointRun::start() {
 
 void PointRun::begin_calibrating(State start) {
   CalibrationGoal goal{.temperature = config_.drive.temperature, .frequency = config_.drive.frequency, .beat = beat_};
+  goal.threads = tuning_.threads;
   // Above 0.78 the collision rate ages for long: calibrate an aged copy, or T would drift from the start.
   if (config_.system.packing_fraction > 0.78) goal.settle = config_.run.equilibrate;
   calibrator_.emplace(std::move(start), goal);
@@ -209,7 +211,7 @@ void PointRun::begin_equilibrating(State start) {
     create_trajectory(folder_.trajectory(), start, config_.output.trajectory_frames);
   frames_.emplace(folder_.trajectory(), config_.output.trajectory_frames, start.box_length);
   measurement_.emplace(start, beat_);
-  simulation_.emplace(std::move(start));
+  simulation_.emplace(std::move(start), tuning_);
   watch_ = Watch(config_.run.self_check);
 }
 
@@ -244,7 +246,7 @@ void PointRun::resume() {
     create_trajectory(folder_.trajectory(), probe, config_.output.trajectory_frames);
     log("trajectory.h5 was gone: made again, without the frames before this point");
   }
-  simulation_.emplace(std::move(checkpoint.state));
+  simulation_.emplace(std::move(checkpoint.state), tuning_);
   watch_ = Watch(config_.run.self_check);
   log(fmt::format("resumed at beat {}{}", beats_,
                   checkpoint.from_previous ? " from the previous checkpoint (the newest was damaged)" : ""));
@@ -432,6 +434,7 @@ FieldGroup PointRun::own_fields() {
 Summary PointRun::finish() {
   const State end = simulation_->state();
   facts_.end_energy = kinetic_energy(end);
+  facts_.threads = simulation_->threads();
   write_checkpoint_now();
   facts_.collisions_per_second = static_cast<double>(end.tally.collisions()) / std::max(engine_seconds_, 1e-9);
   Summary summary = summarise(config_, end, *measurement_, facts_);

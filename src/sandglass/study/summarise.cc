@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sandglass/core/version.h"
+#include "sandglass/dynamics/simulation.h"
 #include "sandglass/observe/fit.h"
 #include "sandglass/observe/stationarity.h"
 
@@ -151,6 +152,19 @@ void judge(const Config& config, const Measurement& measurement, Summary& summar
 
 }  // namespace
 
+std::string fewer_threads(const Config& config, unsigned used) {
+  const std::string asked = fmt::format("{} of {} threads worked on the trajectory", used, config.run.threads);
+  if (threads_for(config.system.particles, config.run.threads) == 1)
+    return fmt::format(
+        "{}: with fewer than {} disks more would be slower. Runs with other seeds side by side make better use of the "
+        "cores.",
+        asked, least_disks_for_threads);
+  if (config.drive.kind == DriveKind::pair && config.drive.partner == PartnerRule::within)
+    return fmt::format("{}: kicks of partners within reach are done on one (drive.partner = nearest on several).",
+                       asked);
+  return fmt::format("{}: the box has room for no more strips.", asked);
+}
+
 void summarise_frames(const Correlator& correlator, const StructureSampler& structure, Summary& summary) {
   describe_motion(correlator, summary);
   describe_relaxation(correlator, summary);
@@ -196,8 +210,7 @@ Summary summarise(const Config& config, const State& end, const Measurement& mea
   summary.collisions_per_second = facts.collisions_per_second;
   summary.state_hash = state_hash(end);
 
-  if (config.run.threads > 1)
-    summary.decisions.push_back("One trajectory runs on one core in this version; run.threads had no effect.");
+  if (facts.threads < config.run.threads) summary.decisions.push_back(fewer_threads(config, facts.threads));
   summarise_frames(measurement.correlator(), measurement.structure(), summary);
   describe_partners(averages, summary);
   describe_energy(end, averages, facts, summary);

@@ -15,7 +15,11 @@ struct RunFacts {
   double start_energy = 0, end_energy = 0;  ///< kinetic energy of all disks at both ends of the measured stretch
   double wall_seconds = 0;
   double collisions_per_second = 0;
+  unsigned threads = 1;  ///< that worked on the trajectory
 };
+
+/// Why fewer threads were used than asked for: a sentence for the user.
+std::string fewer_threads(const Config& config, unsigned used);
 
 /// The summary, with what the program decided by itself and what the reader must be warned of.
 Summary summarise(const Config& config, const State& end, const Measurement& measurement, const RunFacts& facts);

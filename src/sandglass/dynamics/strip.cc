@@ -6,18 +6,42 @@
 //     both its disks. So the earliest next event of all, unless it is a review, is the earliest event there is.
 //  4. Every finite next event has an entry in the calendar, a contact one for the pair.
 //  5. Two disks that overlap or touch are in each other's lists; lists are symmetric.
+#include "sandglass/dynamics/strip.h"
+
+#include <cassert>
+
 #include "sandglass/dynamics/epoch.h"
-#include "sandglass/dynamics/isa_engine.h"
 
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
-void IsaEngine::run(double end) {
+Strip::Strip(Tables& tables)
+    : tables_(&tables),
+      records_(tables.records.begin()),
+      cold_(tables.cold.begin()),
+      box_(tables.box),
+      law_(tables.state.collision),
+      leash_(tables.leash),
+      neighbours_(tables.neighbours) {
+  for (const int a : {small, big})
+    for (const int b : {small, big}) masses_[a][b] = tables.masses[a][b];
+}
+
+Strip::Strip(Tables& tables, Rows core, std::uint32_t reach, std::uint32_t lane) : Strip(tables) {
+  core_ = core;
+  reach_ = reach;
+  lane_ = lane;
+  whole_ = false;
+}
+
+void Strip::run(double end) {
+  end_ = end;
   auto in_order = [this](std::uint32_t a, std::uint32_t b) { return before(a, b); };
   auto ahead = [this](std::uint32_t i) { fetch_disk(i); };
   auto soon = [this](std::uint32_t i) { fetch_neighbours(i); };
-  auto pop = [&] { return calendar_.pop(&records_[0], end, in_order, ahead, soon); };
+  auto pop = [&] { return calendar_.pop(records_, end_, in_order, ahead, soon); };
   for (std::uint32_t i = pop(); i != no_disk; i = pop()) {
+    assert(owns(i));
     const Record& disk = records_[i];
     const double t = disk.next_time;
     if (--until_stall_check_ == 0) [[unlikely]]
@@ -36,14 +60,36 @@ void IsaEngine::run(double end) {
       case Next::review:
         on_review(i, t);
         break;
+      case Next::freeze:
+        freeze(i, t);
+        break;
     }
   }
-  state_.now = end;
+}
+
+void Strip::hand_in(Tally& tally, Simulation::Bookkeeping& bookkeeping) {
+  for (int pair = 0; pair < 3; ++pair) tally.contacts[pair] += tally_.contacts[pair];
+  for (const int species : {small, big}) tally.kicked[species] += tally_.kicked[species];
+  tally.elastic_contacts += tally_.elastic_contacts;
+  tally.kicks += tally_.kicks;
+  tally.kicks_without_partner += tally_.kicks_without_partner;
+  tally.transits += tally_.transits;
+  tally.virial.add(tally_.virial);
+  tally.dissipated.add(tally_.dissipated);
+  tally.injected.add(tally_.injected);
+  tally_ = Tally();
+  bookkeeping.predictions += bookkeeping_.predictions;
+  bookkeeping.orphans += bookkeeping_.orphans;
+  bookkeeping.list_rebuilds += bookkeeping_.list_rebuilds;
+  bookkeeping.wide_partner_searches += bookkeeping_.wide_partner_searches;
+  bookkeeping.frozen += bookkeeping_.frozen;
+  bookkeeping.left_over += bookkeeping_.left_over;
+  bookkeeping_ = {};
 }
 
 /// Brings what an event of disk i will need nearer to the processor: first its own list and cold record, and its
 /// partner's; then, through the lists, the neighbours, and where the list expires the grid.
-void IsaEngine::fetch_disk(std::uint32_t i) const {
+void Strip::fetch_disk(std::uint32_t i) const {
   const std::uint32_t partner = records_[i].partner;
   prefetch(neighbours_.list(i));
   prefetch(&cold_[i]);
@@ -52,7 +98,7 @@ void IsaEngine::fetch_disk(std::uint32_t i) const {
   prefetch(&cold_[j]);
 }
 
-void IsaEngine::fetch_neighbours(std::uint32_t i) const {
+void Strip::fetch_neighbours(std::uint32_t i) const {
   const Record& disk = records_[i];
   const std::uint32_t* list = neighbours_.list(i);
   for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
@@ -67,15 +113,14 @@ void IsaEngine::fetch_neighbours(std::uint32_t i) const {
 
 /// In an inelastic collapse infinitely many collisions take place in a finite time, and the loop would never end. After
 /// 64 events per disk (and a million at least) time must have gone on by more than a billionth of a mean free time.
-void IsaEngine::check_progress(double t) {
-  if (t - progress_time_ < 1e-9 * state_.epoch_length / beats_per_epoch) report_collapse(state_, t);
+void Strip::check_progress(double t) {
+  if (t - progress_time_ < 1e-9 * tables_->state.epoch_length / beats_per_epoch) report_collapse(tables_->state, t);
   progress_time_ = t;
-  until_stall_check_ = (std::uint64_t{1} << 20) + 64 * size_;
+  until_stall_check_ = (std::uint64_t{1} << 20) + 64 * tables_->size;
 }
 
 /// The collision of two disks at time t, worked out but not carried out.
-[[gnu::always_inline]] inline IsaEngine::Collision IsaEngine::collision(std::uint32_t i, std::uint32_t j,
-                                                                        double t) const {
+[[gnu::always_inline]] inline Strip::Collision Strip::collision(std::uint32_t i, std::uint32_t j, double t) const {
   const ColdRecord &cold_a = cold_[i], &cold_b = cold_[j];
   Collision result{i,
                    j,
@@ -84,15 +129,15 @@ void IsaEngine::check_progress(double t) {
                    {cold_a.image_x, cold_a.image_y},
                    {cold_b.image_x, cold_b.image_y},
                    {},
-                   elastic_by_tc(state_.collision, t, cold_a.last_contact, cold_b.last_contact)};
+                   elastic_by_tc(law_, t, cold_a.last_contact, cold_b.last_contact)};
   advance(result.a, result.image_a.x, result.image_a.y, t, box_);
   advance(result.b, result.image_b.x, result.image_b.y, t, box_);
   const PairMasses& masses = masses_[records_[i].species][records_[j].species];
-  result.impact = collide(result.a, result.b, masses, result.elastic ? 1.0 : state_.collision.restitution, box_);
+  result.impact = collide(result.a, result.b, masses, result.elastic ? 1.0 : law_.restitution, box_);
   return result;
 }
 
-[[gnu::always_inline]] inline void IsaEngine::carry_out(const Collision& result) {
+[[gnu::always_inline]] inline void Strip::carry_out(const Collision& result) {
   const auto [i, j, a, b, image_a, image_b, impact, elastic] = result;
   ColdRecord &cold_a = cold_[i], &cold_b = cold_[j];
   set_flight(records_[i], a);
@@ -101,18 +146,17 @@ void IsaEngine::check_progress(double t) {
   cold_b.image_x = image_b.x, cold_b.image_y = image_b.y;
   cold_a.last_contact = cold_b.last_contact = a.time;
 
-  Tally& tally = state_.tally;
-  ++tally.contacts[records_[i].species + records_[j].species];
-  tally.elastic_contacts += elastic;
-  tally.virial.add(impact.virial);
-  tally.dissipated.add(impact.dissipated);
+  ++tally_.contacts[records_[i].species + records_[j].species];
+  tally_.elastic_contacts += elastic;
+  tally_.virial.add(impact.virial);
+  tally_.dissipated.add(impact.dissipated);
   if (log) [[unlikely]]
     cold_a.id < cold_b.id ? log_event(EventKind::contact, a.time, i, j) : log_event(EventKind::contact, a.time, j, i);
 }
 
 /// The searches for what comes next begin before the new flights are written: they need not wait for that, nor for each
 /// other. The two disks themselves are left out; they have just parted.
-void IsaEngine::on_contact(std::uint32_t i, std::uint32_t j, double t) {
+void Strip::on_contact(std::uint32_t i, std::uint32_t j, double t) {
   const Collision result = collision(i, j, t);
   const Lanes of_i = first_contacts(i, result.a, j), of_j = first_contacts(j, result.b, i);
   carry_out(result);
@@ -120,29 +164,34 @@ void IsaEngine::on_contact(std::uint32_t i, std::uint32_t j, double t) {
   settle(j, of_j);
 }
 
-void IsaEngine::on_kick(std::uint32_t i, double t) {
+void Strip::on_kick(std::uint32_t i, double t) {
   ColdRecord& cold = cold_[i];
-  const Kick kick = Kick::draw(state_.seed, cold.id, ++cold.kick_count);
-  cold.next_kick = t + kick.wait / clock_rate(state_.drive);
-
-  Tally& tally = state_.tally;
-  const bool pair = state_.drive.kind == DriveKind::pair;
+  const Kick kick = Kick::draw(tables_->state.seed, cold.id, cold.kick_count + 1);
+  const Drive& drive = tables_->state.drive;
+  const bool pair = drive.kind == DriveKind::pair;
   std::uint32_t j = no_disk;
   if (pair) {
-    j = state_.drive.partner == PartnerRule::nearest ? nearest_partner(i, t) : partner_within_reach(i, t, kick);
+    j = drive.partner == PartnerRule::within ? partner_within_reach(i, t, kick)
+        : knows_all()                        ? nearest_partner(i, t)
+                                             : nearest_known_partner(i, t);
+    if (j == undecided) return freeze(i, t);
+  }
+  ++cold.kick_count;
+  cold.next_kick = t + kick.wait / clock_rate(drive);
+  if (pair) {
     if (j == no_disk) {
-      ++tally.kicks_without_partner;
+      ++tally_.kicks_without_partner;
       if (log) log_event(EventKind::kick, t, i, j);
       set_next(records_[i], never, Next::review, no_disk);
       predict(i);
       return;
     }
   }
-  ++tally.kicks;
-  const double px = state_.drive.amplitude * kick.px, py = state_.drive.amplitude * kick.py;
+  ++tally_.kicks;
+  const double px = drive.amplitude * kick.px, py = drive.amplitude * kick.py;
   double gained = push(i, t, px, py);
   if (pair) gained += push(j, t, -px, -py);
-  tally.injected.add(gained);
+  tally_.injected.add(gained);
   if (log) [[unlikely]]
     log_event(EventKind::kick, t, i, j);
   if (!pair) return predict(i);
@@ -153,46 +202,50 @@ void IsaEngine::on_kick(std::uint32_t i, double t) {
 }
 
 /// Gives momentum to disk i at time t; returns the energy gained. What was next for it is void.
-double IsaEngine::push(std::uint32_t i, double t, double px, double py) {
+double Strip::push(std::uint32_t i, double t, double px, double py) {
   if (records_[i].partner != no_disk) part(records_[i].partner);
   Flight flight(records_[i]);
   advance(flight, cold_[i].image_x, cold_[i].image_y, t, box_);
   const double gained = give_momentum(flight, px, py, inverse_mass(records_[i]));
   set_flight(records_[i], flight);
-  ++state_.tally.kicked[records_[i].species];
+  ++tally_.kicked[records_[i].species];
   return gained;
 }
 
-void IsaEngine::on_transit(std::uint32_t i, double t) {
+void Strip::on_transit(std::uint32_t i, double t) {
   Flight flight(records_[i]);
   advance(flight, cold_[i].image_x, cold_[i].image_y, t, box_);
   set_flight(records_[i], flight);
-  ++state_.tally.transits;
+  ++tally_.transits;
   if (log) log_event(EventKind::transit, t, i, no_disk);
   predict(i);
 }
 
 /// Looks again for the next contact of disk i, after making its list anew if that has expired.
-void IsaEngine::on_review(std::uint32_t i, double t) {
+void Strip::on_review(std::uint32_t i, double t) {
   set_next(records_[i], never, Next::review, no_disk);
-  if (!within_leash(records_[i], cold_[i], t)) remake_list(i, t);
+  if (!within_leash(records_[i], cold_[i], t) && !remake_list(i, t)) [[unlikely]]
+    return freeze(i, t);
   predict(i);
 }
 
 /// Makes the list of disk i around where it is at time t. Its record does not change. Nobody names i, whose next event
-/// this was; so nobody who has left its list does.
-void IsaEngine::remake_list(std::uint32_t i, double t) {
-  ++bookkeeping.list_rebuilds;
+/// this was; so nobody who has left its list does. False if that would reach into what another thread works on.
+bool Strip::remake_list(std::uint32_t i, double t) {
   Flight now(records_[i]);
   std::int32_t image_x = 0, image_y = 0;
   advance(now, image_x, image_y, t, box_);
   const FixedPoint centre = neighbours_.grid().point(now.x, now.y);
-  neighbours_.renew(i, cold_[i].centre, centre, &records_[0]);
+  if (!whole_ && !core_.hold(neighbours_.grid().row_of(centre))) return false;
+  if (!neighbours_.renew(i, cold_[i].centre, centre, records_, !whole_)) return false;
+  ++bookkeeping_.list_rebuilds;
   cold_[i].centre = centre;
+  if (!whole_) concern_if_beside_frozen(i);
+  return true;
 }
 
 /// Canonical order of two disks' next events at one time: kind, then ids.
-bool IsaEngine::before(std::uint32_t a, std::uint32_t b) const {
+bool Strip::before(std::uint32_t a, std::uint32_t b) const {
   const Record &disk_a = records_[a], &disk_b = records_[b];
   auto kind = [](Next next) { return next == Next::contact_entered_by_partner ? Next::contact : next; };
   if (kind(disk_a.next) != kind(disk_b.next)) return disk_a.next < disk_b.next;
@@ -204,16 +257,9 @@ bool IsaEngine::before(std::uint32_t a, std::uint32_t b) const {
   return ids(a, disk_a) < ids(b, disk_b);
 }
 
-void IsaEngine::log_event(EventKind kind, double t, std::uint32_t i, std::uint32_t j) const {
+void Strip::log_event(EventKind kind, double t, std::uint32_t i, std::uint32_t j) const {
   append_event(*log, {t, kind, cold_[i].id, j == no_disk ? no_disk : cold_[j].id});
 }
 
 }  // namespace SANDGLASS_ISA
-
-#define SANDGLASS_JOIN_(a, b) a##b
-#define SANDGLASS_JOIN(a, b) SANDGLASS_JOIN_(a, b)
-Engine* SANDGLASS_JOIN(make_engine_, SANDGLASS_ISA)(State& state, const Tuning& tuning) {
-  return new IsaEngine(state, tuning);
-}
-
 }  // namespace sandglass

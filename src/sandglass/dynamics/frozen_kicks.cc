@@ -1,0 +1,135 @@
+// Pair kicks in a window. A frozen disk's clock tells when it kicks, but not from where: then all disks that may be its
+// nearest are frozen. And a known disk does not kick, but is frozen, where a frozen one may be nearest to it.
+#include <algorithm>
+#include <cmath>
+
+#include "sandglass/dynamics/strip.h"
+
+namespace sandglass {
+inline namespace SANDGLASS_ISA {
+
+/// Gap of disk i on its present flight at time t and disk k at t_k.
+double Strip::gap_at(std::uint32_t i, double t, std::uint32_t k, double t_k) const {
+  const Record &a = records_[i], &b = records_[k];
+  const double rx = box_.nearest(std::fma(b.vx, t_k - b.time, b.x) - std::fma(a.vx, t - a.time, a.x));
+  const double ry = box_.nearest(std::fma(b.vy, t_k - b.time, b.y) - std::fma(a.vy, t - a.time, a.y));
+  return std::sqrt(rx * rx + ry * ry) - (a.radius + b.radius);
+}
+
+/// In a later pass: whether disk k has been known at time t in an earlier one. Where it was then may be forgotten; but
+/// it was not near a disk that kicked at time t, or it would have been frozen by then.
+bool Strip::is_done_at(std::uint32_t k, double t) const {
+  if (first_pass_) return false;
+  return is_done(k) || records_[k].time > t || (is_frozen(records_[k]) && since(k) > t);
+}
+
+/// How far a frozen disk may have come until time t, and a bit.
+double Strip::growth(std::uint32_t frozen_disk, double t) const {
+  return tables_->window.top_speed[records_[frozen_disk].species] * (t - since(frozen_disk)) + 1e-9 * box_.length;
+}
+
+/// The events of the window, and what happens to disks when the clocks of frozen ones ring.
+void Strip::run_window() {
+  const double end = tables_->window.end;
+  for (;;) {
+    const double ring = frozen_kicks_.empty() ? never : frozen_kicks_[0].time;
+    run(std::fmin(end, std::nextafter(ring, -never)));
+    if (failed_ || frozen_kicks_.empty()) return;
+    if (frozen_kicks_[0].time < ring) continue;  // a disk has been frozen meanwhile, and the loop has stopped early
+    const FrozenKick kick = frozen_kicks_[0];
+    std::pop_heap(frozen_kicks_.begin(), frozen_kicks_.end());
+    frozen_kicks_.pop_back();
+    on_frozen_kick(kick);
+    const Kick random = Kick::draw(tables_->state.seed, cold_[kick.slot].id, kick.count);
+    const double next = kick.time + random.wait / clock_rate(tables_->state.drive);
+    if (next > end) continue;
+    frozen_kicks_.push_back({next, kick.count + 1, kick.slot});
+    std::push_heap(frozen_kicks_.begin(), frozen_kicks_.end());
+  }
+}
+
+void Strip::expect_kick(std::uint32_t frozen_disk) {
+  const ColdRecord& cold = cold_[frozen_disk];
+  if (tables_->state.drive.kind != DriveKind::pair || cold.next_kick > tables_->window.end) return;
+  frozen_kicks_.push_back({cold.next_kick, cold.kick_count + 1, frozen_disk});
+  std::push_heap(frozen_kicks_.begin(), frozen_kicks_.end());
+  end_ = std::fmin(end_, std::nextafter(cold.next_kick, -never));
+}
+
+/// Freezes every disk that may be nearest to a frozen one at its kick: those to which the gap may be as small as the
+/// largest that its nearest neighbour can have.
+void Strip::on_frozen_kick(const FrozenKick& kick) {
+  const std::uint32_t u = kick.slot;
+  const Record& disk = records_[u];
+  const double t = kick.time, start = since(u), grown = growth(u, t);
+  const std::uint32_t* const list = neighbours_.list(u);
+  double nearest = never;  // no nearer one has a larger gap
+  for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) {
+    const std::uint32_t k = list[n];
+    if (is_done_at(k, t)) continue;
+    if (is_frozen(records_[k]))
+      nearest = std::fmin(nearest, gap_at(u, start, k, since(k)) + grown + growth(k, t));
+    else
+      nearest = std::fmin(nearest, gap_at(u, start, k, t) + grown);
+  }
+  // Another strip cannot know of this kick: it must not reach there.
+  const double bodies = disk.radius + largest_radius();
+  if (!whole_ && !(nearest + grown + bodies + 2 * leash_ < neighbours_.grid().height(lane_ / 2))) {
+    failed_ = true;
+    return;
+  }
+  const double x = std::fma(disk.vx, start - disk.time, disk.x), y = std::fma(disk.vy, start - disk.time, disk.y);
+  suspects_.clear();
+  auto suspect = [&](std::uint32_t k) {
+    if (k == u || is_done_at(k, t) || is_frozen(records_[k])) return;
+    if (gap_at(u, start, k, t) - grown <= nearest) suspects_.push_back(k);
+  };
+  const Grid& grid = neighbours_.grid();
+  const double dx = grid.offset(cold_[u].centre.x, x), dy = grid.offset(cold_[u].centre.y, y);
+  // Unlisted disks have list centres at least a skin beyond contact from the frozen one's.
+  const double unlisted = leash_ + tables_->window.way - std::sqrt(dx * dx + dy * dy) - grown;
+  if (nearest < unlisted)
+    for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) suspect(list[n]);
+  else
+    grid.visit_near(x, y, nearest + grown + bodies + leash_ + 1e-9, suspect);
+  for (const std::uint32_t k : suspects_) freeze(k, t);
+}
+
+/// The disk nearest to i at time t among those that are known, or undecided.
+std::uint32_t Strip::nearest_known_partner(std::uint32_t i, double t) {
+  const Record& disk = records_[i];
+  double best_gap = never, rival_gap = never;
+  std::uint32_t best = no_disk;
+  auto visit = [&](std::uint32_t k) {
+    if (k == i || is_done_at(k, t)) return;
+    if (is_frozen(records_[k])) {
+      rival_gap = std::fmin(rival_gap, gap_at(i, t, k, since(k)) - growth(k, t));
+      return;
+    }
+    const double gap = surface_gap(disk, records_[k], disk.radius + records_[k].radius, t, box_);
+    if (gap < best_gap || (gap == best_gap && best != no_disk && cold_[k].id < cold_[best].id)) {
+      best_gap = gap;
+      best = k;
+    }
+  };
+  const std::uint32_t* const list = neighbours_.list(i);
+  for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) visit(list[n]);
+
+  const Grid& grid = neighbours_.grid();
+  const double x = std::fma(disk.vx, t - disk.time, disk.x), y = std::fma(disk.vy, t - disk.time, disk.y);
+  const double dx = grid.offset(cold_[i].centre.x, x), dy = grid.offset(cold_[i].centre.y, y);
+  if (!(best_gap < leash_ - std::sqrt(dx * dx + dy * dy))) {  // as in nearest_partner
+    ++bookkeeping_.wide_partner_searches;
+    const double margin = disk.radius + largest_radius() + leash_ + tables_->window.way + 1e-9;
+    if (!whole_ && !(best_gap + margin + leash_ < grid.height(lane_))) return undecided;
+    for (double radius = margin + 2 * leash_;; radius *= 1.5) {
+      if (best != no_disk && best_gap + margin < radius) radius = best_gap + margin;
+      const bool all = grid.visit_near(x, y, radius, visit);
+      if (all || best_gap + margin <= radius) break;
+    }
+  }
+  return rival_gap <= best_gap ? undecided : best;
+}
+
+}  // namespace SANDGLASS_ISA
+}  // namespace sandglass

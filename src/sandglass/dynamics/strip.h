@@ -1,0 +1,202 @@
+// A strip of the plane and the loop over its events: what one thread works on. Without threads one strip is the whole
+// plane. strip.cc has the loop, prediction.cc what comes next for a disk, partner.cc the search for the partner of a
+// kick, freezing.cc what must be left to another strip. All of them are compiled once per instruction set.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "sandglass/dynamics/array.h"
+#include "sandglass/dynamics/calendar.h"
+#include "sandglass/dynamics/contact.h"
+#include "sandglass/dynamics/drive.h"
+#include "sandglass/dynamics/engine.h"
+#include "sandglass/dynamics/neighbours.h"
+#include "sandglass/dynamics/record.h"
+#include "sandglass/dynamics/tables.h"
+
+namespace sandglass {
+inline namespace SANDGLASS_ISA {
+
+/// Rows of the grid, from `first` upwards, periodically.
+struct Rows {
+  std::uint32_t first = 0, count = 0, side = 1;
+
+  [[nodiscard]] bool hold(std::uint32_t row) const { return (row >= first ? row - first : row + side - first) < count; }
+};
+
+/// An entry for the calendar.
+struct Entry {
+  double time;
+  std::uint32_t slot;
+};
+
+class alignas(128) Strip {
+ public:
+  Strip() = default;
+  explicit Strip(Tables& tables);  ///< the whole plane
+  /// The rows `core`; its disks have neighbours up to `reach` rows beyond, and the next strip is `lane` rows away.
+  Strip(Tables& tables, Rows core, std::uint32_t reach, std::uint32_t lane);
+
+  // -- one after the other, without threads
+  /// Enters a disk that has no list. Returns its slot's neighbours by neighbours().list().
+  void enter_list(std::uint32_t slot) { neighbours_.enter(slot, cold_[slot].centre, records_); }
+  [[nodiscard]] Neighbours& neighbours() { return neighbours_; }
+  void set_calendar(Calendar calendar) { calendar_ = std::move(calendar); }
+  void predict(std::uint32_t i);
+
+  /// Does every event at or before `end`.
+  void run(double end);
+
+  // -- in a window, see windows.cc and freezing.cc
+  /// Enters what a later pass has found to come after the window, as far as it belongs here.
+  void take_over(const Strip& other);
+  void clear_outbox() { outbox_.clear(); }
+  /// Freezes all disks of these rows from the start of the window on.
+  void freeze_rows(Rows rows);
+  /// The window's events of the strip's own disks.
+  void first_pass();
+  /// Goes on with those disks frozen by some strips that stand here.
+  void begin_later_pass();
+  void resume(const Strip& other);
+  void later_pass();
+
+  [[nodiscard]] std::size_t left() const { return left_.size(); }
+  [[nodiscard]] std::uint32_t resumed() const { return resumed_; }
+  [[nodiscard]] bool owns(std::uint32_t i) const { return whole_ || core_.hold(row(i)); }
+  /// A calendar with what comes next for the strip's own disks.
+  void remake_calendar(Calendar calendar);
+  [[nodiscard]] bool failed() const { return failed_; }
+  [[nodiscard]] bool too_fast() const { return too_fast_; }
+  void enter_calendar(std::uint32_t i) { calendar_.push(records_[i].next_time, i); }
+
+  /// Adds what was counted to `tally` and `bookkeeping`, and begins anew.
+  void hand_in(Tally& tally, Simulation::Bookkeeping& bookkeeping);
+
+  std::vector<Event>* log = nullptr;
+
+ private:
+  friend struct PredictionPerf;  // measures the search (prediction.perf.cc)
+
+  struct Image {
+    std::int32_t x, y;
+  };
+  struct Collision {
+    std::uint32_t i, j;
+    Flight a, b;  // after it
+    Image image_a, image_b;
+    Impact impact;
+    bool elastic;  // by the TC model
+  };
+  struct Lanes {  // the contacts of one block of a list
+    double soonest;
+    unsigned all, strict;  // lanes with the soonest time; those that come strictly before what the other has next
+  };
+  struct Foreseen {
+    double time;
+    std::uint32_t partner;
+  };
+  struct FrozenKick {  // a frozen disk's clock rings: its kick number `count`
+    double time;
+    std::uint64_t count;
+    std::uint32_t slot;
+    friend bool operator<(const FrozenKick& a, const FrozenKick& b) { return a.time > b.time; }  // for a heap
+  };
+  struct Left {  // a frozen disk and the row in which it stands
+    std::uint32_t slot, row;
+  };
+
+  void on_contact(std::uint32_t i, std::uint32_t j, double t);
+  void on_kick(std::uint32_t i, double t);
+  void on_transit(std::uint32_t i, double t);
+  void on_review(std::uint32_t i, double t);
+  [[nodiscard]] Collision collision(std::uint32_t i, std::uint32_t j, double t) const;
+  void carry_out(const Collision& result);
+  double push(std::uint32_t i, double t, double px, double py);
+  bool remake_list(std::uint32_t i, double t);
+  void check_progress(double t);
+  void fetch_disk(std::uint32_t i) const;
+  void fetch_neighbours(std::uint32_t i) const;
+
+  void settle(std::uint32_t i, Lanes begun);
+  void schedule(std::uint32_t i, Foreseen contact);
+  void enter_event(double t, std::uint32_t i);
+  void part(std::uint32_t i);
+  [[nodiscard]] Foreseen earliest_contact(std::uint32_t i) const;
+  [[nodiscard]] Foreseen earliest_contact_by_rule(std::uint32_t i) const;
+  [[nodiscard]] Lanes contacts_of_block(const Flight& disk, double disk_radius, const std::uint32_t* list,
+                                        std::uint32_t except) const;
+  [[nodiscard]] Lanes first_contacts(std::uint32_t i, const Flight& flight, std::uint32_t except) const;
+  [[nodiscard]] Foreseen earliest_of_blocks(std::uint32_t i, Lanes lanes) const;
+  [[nodiscard]] bool within_leash(const Record& disk, const ColdRecord& cold, double t) const;
+  [[nodiscard]] double list_expiry(const Record& disk, const ColdRecord& cold) const;
+  [[nodiscard]] bool comes_before_next_of(const Record& other, double t, std::uint32_t i) const;
+
+  static constexpr std::uint32_t undecided = no_disk - 1;  // in place of a partner: a frozen disk may be nearer
+  std::uint32_t nearest_partner(std::uint32_t i, double t);
+  std::uint32_t nearest_known_partner(std::uint32_t i, double t);
+  [[nodiscard]] Smallest smallest_gap(const Record& disk, const std::uint32_t* list, double t) const;
+  std::uint32_t partner_within_reach(std::uint32_t i, double t, const Kick& kick);
+
+  void begin_pass();
+  void end_pass();
+  void freeze(std::uint32_t i, double t);
+  void freeze_no_later(std::uint32_t i, double t);
+  [[nodiscard]] double freezing_time(std::uint32_t i);
+  [[nodiscard]] double earliest_touch(const Record& disk, std::uint32_t ghost) const;
+  void concern(std::uint32_t i);
+  void concern_if_beside_frozen(std::uint32_t i);
+  void check_speed(const Record& disk);
+  void run_window();
+  void expect_kick(std::uint32_t frozen_disk);
+  void on_frozen_kick(const FrozenKick& kick);
+  [[nodiscard]] double since(std::uint32_t i) const {
+    return tables_->window.start + static_cast<double>(cold_[i].frozen_at);
+  }
+  [[nodiscard]] double gap_at(std::uint32_t i, double t, std::uint32_t k, double t_k) const;
+  [[nodiscard]] bool is_done_at(std::uint32_t k, double t) const;
+  [[nodiscard]] double growth(std::uint32_t frozen_disk, double t) const;
+  [[nodiscard]] bool is_done(std::uint32_t i) const { return !first_pass_ && cold_[i].frozen_at == unconcerned; }
+  [[nodiscard]] bool knows_all() const { return whole_ && first_pass_; }
+  [[nodiscard]] std::uint32_t row(std::uint32_t i) const { return neighbours_.grid().row_of(cold_[i].centre); }
+
+  [[nodiscard]] bool before(std::uint32_t a, std::uint32_t b) const;
+  void log_event(EventKind kind, double t, std::uint32_t i, std::uint32_t j) const;
+  [[nodiscard]] double inverse_mass(const Record& disk) const { return masses_[disk.species][disk.species].inverse_a; }
+  [[nodiscard]] double largest_radius() const { return box_.length / 4 - box_.transit; }
+
+  const Tables* tables_ = nullptr;
+  Record* records_ = nullptr;
+  ColdRecord* cold_ = nullptr;
+  Box box_{1, {}};
+  PairMasses masses_[species_count][species_count];
+  CollisionLaw law_;
+  double leash_ = 0;
+  Neighbours neighbours_;
+  Calendar calendar_;
+  double end_ = 0;              // of the present run
+  double outbox_from_ = never;  // what comes later is not for this strip's calendar
+  std::uint64_t until_stall_check_ = 1;
+  double progress_time_ = -never;
+  Tally tally_;
+  Simulation::Bookkeeping bookkeeping_;
+  GrowingArray<DiskName> candidates_;  // possible partners of a kick
+
+  Rows core_;                // the disks that stand here are the strip's own
+  std::uint32_t reach_ = 0;  // rows beyond in which they have neighbours
+  std::uint32_t lane_ = 0;   // rows to the next strip
+  bool whole_ = true;        // no other thread is at work
+  bool first_pass_ = true;
+  bool frozen_about_ = false;              // in a later pass: some are frozen that may be met
+  bool failed_ = false;                    // the window must be undone
+  bool too_fast_ = false;                  // because a disk was faster than trusted
+  GrowingArray<FrozenKick> frozen_kicks_;  // a heap
+  GrowingArray<std::uint32_t> suspects_;   // may be nearest to a frozen disk that kicks
+  GrowingArray<Left> left_;                // frozen in this pass
+  GrowingArray<std::uint32_t> concerned_;  // as frozen_at says, and not always so
+  std::uint32_t resumed_ = 0;              // frozen in an earlier pass, not in this one
+  GrowingArray<Entry> outbox_;
+};
+
+}  // namespace SANDGLASS_ISA
+}  // namespace sandglass

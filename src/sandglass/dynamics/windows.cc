@@ -1,0 +1,232 @@
+// One trajectory on several threads. Time is cut into windows, and the plane into strips of whole rows of the grid with
+// lanes between them.
+//  First pass: the disks in the lanes are frozen; the strips do the window's events side by side, and freeze what the
+//    lanes may reach. A disk that is never frozen is done with the window.
+//  Second pass: strips around the former lanes go on with the frozen disks, side by side again. What is near their own
+//    borders, in the middle of the former strips, stays frozen.
+//  Last pass: one thread does the rest, most often nothing.
+// A strip sees and changes what its disks have in their lists and, in the second pass, the partners of those: lanes are
+// two such ranges wide, four in the second pass, so that no two threads meet.
+#include <cmath>
+
+#include "sandglass/dynamics/isa_engine.h"
+
+namespace sandglass {
+inline namespace SANDGLASS_ISA {
+
+void IsaEngine::run(double end) {
+  while (state_.now < end && strips_ > 1) {
+    if (windows_since_kept_ == windows_between_copies_) keep();
+    const double windows = std::ceil((end - state_.now) / window_length());
+    do_window(windows > 1 ? state_.now + (end - state_.now) / windows : end);
+  }
+  if (strips_ > 1) return;
+  whole_.log = log;
+  whole_.run(end);
+  state_.now = end;
+  hand_in();
+}
+
+/// As many strips as there are threads for, if they are high enough for the two passes to be worth it.
+std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) const {
+  if (!crew || (state_.drive.kind == DriveKind::pair && state_.drive.partner == PartnerRule::within)) return 1;
+  const std::uint32_t lane = neighbours.grid().rows_within(4 * neighbours.longest_range());
+  const std::uint32_t worth = tuning_.strip_rows > 0 ? tuning_.strip_rows : 3 * lane, possible = lane + 2;
+  const std::uint32_t strips = neighbours.grid().side() / (worth > possible ? worth : possible);
+  return strips < 2 ? 1 : strips < crew->size() ? strips : crew->size();
+}
+
+/// Gives the disks to strips, according to what is foreseen for them now.
+void IsaEngine::divide() {
+  const std::uint32_t side = whole_.neighbours().grid().side(), n = strips_;
+  const double range = whole_.neighbours().longest_range();
+  auto rows_within = [&](double distance) { return whole_.neighbours().grid().rows_within(distance); };
+  reach_ = rows_within(range);
+  const std::uint32_t wide_lane = rows_within(4 * range);  // wide enough for kicks across it, too
+  const std::uint32_t lane = state_.drive.kind == DriveKind::pair ? wide_lane : rows_within(2 * range);
+  first_ = std::make_unique<Strip[]>(n);
+  shifted_ = std::make_unique<Strip[]>(n);
+  lanes_ = std::make_unique<Rows[]>(n);
+  auto border = [&](std::uint32_t s) { return static_cast<std::uint32_t>(std::uint64_t{s} * side / n); };
+  auto middle = [&](std::uint32_t s) { return (border(s) + border(s + 1)) / 2; };
+  const std::size_t between = tables_.size * 2 * lane / side;  // about as many disks are frozen around a lane
+  // A disk that goes from one strip to the next has been frozen in every window on its way through the lane.
+  const double windows = (whole_.neighbours().grid().height(lane) - 2 * tables_.leash) / way();
+  windows_between_copies_ = windows < 24 ? windows > 1 ? static_cast<unsigned>(windows) : 1 : 24;
+  look_for_top_speed();
+  const double window = window_length();
+  for (std::uint32_t s = 0; s < n; ++s) {
+    const std::uint32_t from = border(s) - lane / 2 + lane, to = border(s + 1) - lane / 2;
+    first_[s] = Strip(tables_, {from, to - from, side}, reach_, lane);
+    lanes_[s] = {(border(s) + side - lane / 2) % side, lane, side};
+    const std::uint32_t below = (s == 0 ? middle(n - 1) : middle(s - 1) + side) - wide_lane / 2 + wide_lane;
+    const std::uint32_t above = middle(s) + side - wide_lane / 2;
+    shifted_[s] = Strip(tables_, {below % side, above - below, side}, reach_, wide_lane);
+    shifted_[s].set_calendar(Calendar(state_.now, window, window / 16, between, tables_.size));
+  }
+  whole_.set_calendar(Calendar(state_.now, window, window / 16, between, tables_.size));
+  replenish();
+  keep();
+}
+
+/// Lists hold what can be met while the fastest disk flies window_part() skins (see make_lists).
+double IsaEngine::window_length() const {
+  const double fastest = std::fmax(top_speed_[small], top_speed_[big]);
+  return std::fmin(way() / fastest, state_.epoch_length);
+}
+
+void IsaEngine::do_window(double end) {
+  const std::uint32_t n = strips_;
+  const double start = state_.now;
+  tables_.window = {start, end, {top_speed_[small], top_speed_[big]}, way()};
+  whole_.log = strip_log(2 * n);
+  for (std::uint32_t s = 0; s < n; ++s) first_[s].log = strip_log(s), shifted_[s].log = strip_log(n + s);
+
+  crew->work(n, [&](unsigned s) {
+    first_[s].take_over(shifted_[s]);
+    first_[s].take_over(shifted_[(s + 1) % n]);
+    first_[s].take_over(whole_);
+    first_[s].freeze_rows(lanes_[s]);
+  });
+  whole_.clear_outbox();
+  crew->work(n, [&](unsigned s) { first_[s].first_pass(); });
+  if (any_failed()) return undo(start, end);
+  crew->work(n, [&](unsigned s) {
+    shifted_[s].begin_later_pass();
+    shifted_[s].resume(first_[s]);
+    shifted_[s].resume(first_[s == 0 ? n - 1 : s - 1]);
+    shifted_[s].later_pass();
+  });
+  if (any_failed()) return undo(start, end);
+  std::size_t left = 0, resumed = 0;
+  for (std::uint32_t s = 0; s < n; ++s) left += first_[s].left() + shifted_[s].left(), resumed += shifted_[s].resumed();
+  if (resumed < left) {
+    whole_.begin_later_pass();
+    for (std::uint32_t s = 0; s < n; ++s) whole_.resume(first_[s]), whole_.resume(shifted_[s]);
+    whole_.later_pass();
+  }
+  if (any_failed()) return undo(start, end);
+  state_.now = end;
+  ++bookkeeping.windows;
+  ++windows_done_;
+  ++windows_since_kept_;
+  hand_in();
+  replenish();
+  gather_strip_logs();
+}
+
+bool IsaEngine::any_failed() const {
+  bool any = whole_.failed();
+  for (std::uint32_t s = 0; s < strips_; ++s) any |= first_[s].failed() | shifted_[s].failed();
+  return any;
+}
+
+/// A frozen disk is trusted not to be faster than six thermal speeds, beyond which there is one in 10^8, nor than the
+/// fastest of all now.
+void IsaEngine::look_for_top_speed() {
+  struct alignas(64) Part {
+    double energy, fastest[species_count];  // fastest: squares
+  };
+  const std::size_t size = tables_.size, threads = strips_;
+  Array<Part> parts(threads);
+  crew->work(strips_, [&](unsigned s) {
+    Part part{0, {0, 0}};
+    for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i) {
+      const Record& disk = tables_.records[i];
+      const double square = disk.vx * disk.vx + disk.vy * disk.vy;
+      part.energy += state_.mixture.mass[disk.species] * square / 2;
+      part.fastest[disk.species] = std::fmax(part.fastest[disk.species], square);
+    }
+    parts[s] = part;
+  });
+  double energy = 0;
+  for (const Part& part : parts) energy += part.energy;
+  for (const int species : {small, big}) {
+    double fastest = 0;
+    for (const Part& part : parts) fastest = std::fmax(fastest, part.fastest[species]);
+    const double thermal = std::sqrt(energy / static_cast<double>(size) / state_.mixture.mass[species]);
+    top_speed_[species] = caution_ * (tuning_.top_speed > 0 ? tuning_.top_speed * thermal
+                                                            : std::fmax(6.25 * thermal, 1.1 * std::sqrt(fastest)));
+  }
+}
+
+/// Keeps the disks as they are, for undo. The calendars are made anew, before a disk that has an entry in one can have
+/// gone through a lane to another strip.
+void IsaEngine::keep() {
+  look_for_top_speed();
+  const std::size_t size = tables_.size, threads = strips_;
+  if (kept_records_.size() != size) {
+    kept_records_ = Array<Record>(size);
+    kept_cold_ = Array<ColdRecord>(size);
+  }
+  const double lead = mean_lead();
+  crew->work(strips_, [&](unsigned s) {
+    for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i) {
+      kept_records_[i] = tables_.records[i];
+      kept_cold_[i] = tables_.cold[i];
+    }
+    first_[s].remake_calendar(calendar_for(lead, size / threads));
+    shifted_[s].clear_outbox();
+  });
+  whole_.clear_outbox();
+  kept_tally_ = state_.tally;
+  kept_now_ = state_.now;
+  windows_since_kept_ = 0;
+}
+
+/// Goes back to the disks that were kept and does all up to `end` again on one thread; up to `start` it has been
+/// logged.
+void IsaEngine::undo(double start, double end) {
+  ++bookkeeping.windows_undone;
+  bool too_fast = whole_.too_fast();
+  for (std::uint32_t s = 0; s < strips_; ++s) too_fast |= first_[s].too_fast() | shifted_[s].too_fast();
+  if (too_fast) caution_ *= 1.1;
+  hand_in();
+  drop_strip_logs();
+  for (std::size_t i = 0; i < tables_.size; ++i) {
+    tables_.records[i] = kept_records_[i];
+    tables_.cold[i] = kept_cold_[i];
+  }
+  state_.tally = kept_tally_;
+  state_.now = kept_now_;
+  make_lists();
+  make_calendar();
+  whole_.log = nullptr;
+  whole_.run(start);
+  whole_.log = log;
+  whole_.run(end);
+  state_.now = end;
+  hand_in();
+  if (++undone_ > 3 && 8 * undone_ > windows_done_)
+    strips_ = 1;  // it does not pay here; the calendar of all disks is there
+  else
+    divide();
+}
+
+/// Adds what the strips have counted.
+void IsaEngine::hand_in() {
+  whole_.hand_in(state_.tally, bookkeeping);
+  for (std::uint32_t s = 0; strips_ > 1 && s < strips_; ++s) {
+    first_[s].hand_in(state_.tally, bookkeeping);
+    shifted_[s].hand_in(state_.tally, bookkeeping);
+  }
+}
+
+/// Sees to it that every strip has room for the cells that will be overfull.
+void IsaEngine::replenish() {
+  auto see_to = [](Neighbours& neighbours) {
+    Grid& grid = neighbours.grid();
+    if (grid.spare_lines() < 16) grid.take_lines(64 + grid.side() / 8);
+  };
+  for (std::uint32_t s = 0; s < strips_; ++s) see_to(first_[s].neighbours()), see_to(shifted_[s].neighbours());
+}
+
+}  // namespace SANDGLASS_ISA
+
+#define SANDGLASS_JOIN_(a, b) a##b
+#define SANDGLASS_JOIN(a, b) SANDGLASS_JOIN_(a, b)
+Engine* SANDGLASS_JOIN(make_engine_, SANDGLASS_ISA)(State& state, const Tuning& tuning) {
+  return new IsaEngine(state, tuning);
+}
+
+}  // namespace sandglass
