@@ -73,7 +73,7 @@ PreemptType=preempt/partition_prio
 PreemptMode=REQUEUE
 KillWait=5
 NodeName={host} NodeAddr=127.0.0.1 CPUs={points} RealMemory=8000 State=UNKNOWN
-PartitionName=low Nodes=ALL Default=YES PriorityTier=1 GraceTime=10 State=UP
+PartitionName=low Nodes=ALL Default=YES PriorityTier=1 GraceTime=0 State=UP
 PartitionName=high Nodes=ALL PriorityTier=10 PreemptMode=OFF State=UP
 """
 
