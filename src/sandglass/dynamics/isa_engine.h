@@ -31,7 +31,8 @@ class IsaEngine final : public Engine {
   [[nodiscard]] double default_skin() const;
   [[nodiscard]] double default_cell_size() const;
 
-  [[nodiscard]] std::uint32_t strips_for_threads(const Neighbours& neighbours) const;
+  [[nodiscard]] std::uint32_t strips_for_threads(const Neighbours& neighbours);
+  [[nodiscard]] std::uint32_t lane_rows(const Neighbours& neighbours) const;
   void divide();
   void look_for_top_speed();
   void keep();
