@@ -38,14 +38,17 @@ std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) {
   std::uint32_t strips = grid.side() / (worth > possible ? worth : possible);
   if (strips > crew->size()) strips = crew->size();
   if (strips < 2) return 1;
+  // The longer a window, the fewer disks are frozen at its start, and the more lists expire, as (1 - window_part)^-2.
+  const double in_lanes = static_cast<double>(strips * lane_rows(neighbours)) / grid.side();
+  window_part_ =
+      tuning_.window_part > 0 ? tuning_.window_part : std::fmax(0.05, std::fmin(1.5 * std::sqrt(in_lanes), 0.3));
   if (tuning_.strip_rows > 0) return strips;
   // Per disk and window: about one and a half times the disks of the lanes are frozen, and half the mean free times in
   // a window are collisions, which take about as long.
   strips_ = strips;
   look_for_top_speed();
   const double collisions = 0.5 * window_length() * beats_per_epoch / state_.epoch_length;
-  const double frozen_disks = 1.5 * strips * lane_rows(neighbours) / grid.side();
-  return strips / (1 + frozen_disks / collisions) > 1.2 ? strips : 1;
+  return strips / (1 + 1.5 * in_lanes / collisions) > 1.2 ? strips : 1;
 }
 
 /// Wide enough that no two strips touch the same disk; with pair kicks, that these do not act across.
@@ -85,7 +88,7 @@ void IsaEngine::divide() {
   keep();
 }
 
-/// Lists hold what can be met while the fastest disk flies window_part() skins (see make_lists).
+/// Lists hold what can be met while the fastest disk flies window_part_ skins (see make_lists).
 double IsaEngine::window_length() const {
   const double fastest = std::fmax(top_speed_[small], top_speed_[big]);
   return std::fmin(way() / fastest, state_.epoch_length);
