@@ -35,12 +35,12 @@ class IsaEngine final : public Engine {
   [[nodiscard]] double default_skin() const;
   [[nodiscard]] double default_cell_size() const;
 
-  [[nodiscard]] std::uint32_t strips_for_threads(const Neighbours& neighbours) const;
+  [[nodiscard]] std::uint32_t strips_for_threads(const Neighbours& neighbours);
+  [[nodiscard]] std::uint32_t lane_rows(const Neighbours& neighbours) const;
   void divide();
   void look_for_top_speed();
   void keep();
-  [[nodiscard]] double window_part() const { return tuning_.window_part > 0 ? tuning_.window_part : 0.25; }
-  [[nodiscard]] double way() const { return window_part() * tables_.neighbours.skin; }
+  [[nodiscard]] double way() const { return window_part_ * tables_.neighbours.skin; }
   [[nodiscard]] double window_length() const;
   void do_window(double end);
   [[nodiscard]] bool any_failed() const;
@@ -59,6 +59,7 @@ class IsaEngine final : public Engine {
   std::unique_ptr<Strip[]> first_;    // the strips of the first pass
   std::unique_ptr<Strip[]> shifted_;  // those of the second, around the borders of the first
   std::unique_ptr<Rows[]> lanes_;     // between the strips of the first pass
+  double window_part_ = 0;            // how far the fastest disk may fly in a window, in skins
   double top_speed_[species_count] = {0, 0};
   double caution_ = 1;          // grows with every window that had to be undone
   Array<Record> kept_records_;  // the disks some windows ago

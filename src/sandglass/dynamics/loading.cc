@@ -46,7 +46,7 @@ OverlappingPair IsaEngine::make_lists() {
   const Neighbours neighbours(tables_.neighbours);
   strips_ = strips_for_threads(neighbours);
   tables_.leash = neighbours.leash();
-  if (strips_ > 1) tables_.leash -= window_part() * tables_.neighbours.skin / 2;
+  if (strips_ > 1) tables_.leash -= way() / 2;
   whole_.hand_in(state_.tally, bookkeeping);
   whole_ = Strip(tables_);
   whole_.log = log;

@@ -9,6 +9,7 @@
 // two such ranges wide, four in the second pass, so that no two threads meet.
 #include <cmath>
 
+#include "sandglass/dynamics/epoch.h"
 #include "sandglass/dynamics/isa_engine.h"
 
 namespace sandglass {
@@ -27,13 +28,32 @@ void IsaEngine::run(double end) {
   hand_in();
 }
 
-/// As many strips as there are threads for, if they are high enough for the two passes to be worth it.
-std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) const {
+/// As many strips as there are threads for, if they are high enough for the two passes to be worth it; one where what
+/// is frozen in a window would take as long as what the threads save.
+std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) {
   if (!crew || (state_.drive.kind == DriveKind::pair && state_.drive.partner == PartnerRule::within)) return 1;
-  const std::uint32_t lane = neighbours.grid().rows_within(4 * neighbours.longest_range());
-  const std::uint32_t worth = tuning_.strip_rows > 0 ? tuning_.strip_rows : 3 * lane, possible = lane + 2;
-  const std::uint32_t strips = neighbours.grid().side() / (worth > possible ? worth : possible);
-  return strips < 2 ? 1 : strips < crew->size() ? strips : crew->size();
+  const Grid& grid = neighbours.grid();
+  const std::uint32_t wide_lane = grid.rows_within(4 * neighbours.longest_range());
+  const std::uint32_t worth = tuning_.strip_rows > 0 ? tuning_.strip_rows : 3 * wide_lane, possible = wide_lane + 2;
+  std::uint32_t strips = grid.side() / (worth > possible ? worth : possible);
+  if (strips > crew->size()) strips = crew->size();
+  if (strips < 2) return 1;
+  // The longer a window, the fewer disks are frozen at its start, and the more lists expire, as (1 - window_part)^-2.
+  const double in_lanes = static_cast<double>(strips * lane_rows(neighbours)) / grid.side();
+  window_part_ =
+      tuning_.window_part > 0 ? tuning_.window_part : std::fmax(0.05, std::fmin(1.5 * std::sqrt(in_lanes), 0.3));
+  if (tuning_.strip_rows > 0) return strips;
+  // Per disk and window: about one and a half times the disks of the lanes are frozen, and half the mean free times in
+  // a window are collisions, which take about as long.
+  strips_ = strips;
+  look_for_top_speed();
+  const double collisions = 0.5 * window_length() * beats_per_epoch / state_.epoch_length;
+  return strips / (1 + 1.5 * in_lanes / collisions) > 1.2 ? strips : 1;
+}
+
+/// Wide enough that no two strips touch the same disk; with pair kicks, that these do not act across.
+std::uint32_t IsaEngine::lane_rows(const Neighbours& neighbours) const {
+  return neighbours.grid().rows_within((state_.drive.kind == DriveKind::pair ? 4 : 2) * neighbours.longest_range());
 }
 
 /// Gives the disks to strips, according to what is foreseen for them now.
@@ -42,8 +62,7 @@ void IsaEngine::divide() {
   const double range = whole_.neighbours().longest_range();
   auto rows_within = [&](double distance) { return whole_.neighbours().grid().rows_within(distance); };
   reach_ = rows_within(range);
-  const std::uint32_t wide_lane = rows_within(4 * range);  // wide enough for kicks across it, too
-  const std::uint32_t lane = state_.drive.kind == DriveKind::pair ? wide_lane : rows_within(2 * range);
+  const std::uint32_t lane = lane_rows(whole_.neighbours()), wide_lane = rows_within(4 * range);
   first_ = std::make_unique<Strip[]>(n);
   shifted_ = std::make_unique<Strip[]>(n);
   lanes_ = std::make_unique<Rows[]>(n);
@@ -69,7 +88,7 @@ void IsaEngine::divide() {
   keep();
 }
 
-/// Lists hold what can be met while the fastest disk flies window_part() skins (see make_lists).
+/// Lists hold what can be met while the fastest disk flies window_part_ skins (see make_lists).
 double IsaEngine::window_length() const {
   const double fastest = std::fmax(top_speed_[small], top_speed_[big]);
   return std::fmin(way() / fastest, state_.epoch_length);
@@ -197,10 +216,8 @@ void IsaEngine::undo(double start, double end) {
   whole_.run(end);
   state_.now = end;
   hand_in();
-  if (++undone_ > 3 && 8 * undone_ > windows_done_)
-    strips_ = 1;  // it does not pay here; the calendar of all disks is there
-  else
-    divide();
+  if (++undone_ > 3 && 8 * undone_ > windows_done_) strips_ = 1;  // it does not pay here
+  if (strips_ > 1) divide();
 }
 
 /// Adds what the strips have counted.

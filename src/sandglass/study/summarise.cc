@@ -162,7 +162,7 @@ std::string fewer_threads(const Config& config, unsigned used) {
   if (config.drive.kind == DriveKind::pair && config.drive.partner == PartnerRule::within)
     return fmt::format("{}: kicks of partners within reach are done on one (drive.partner = nearest on several).",
                        asked);
-  return fmt::format("{}: the box has room for no more strips.", asked);
+  return fmt::format("{}: at this size and density more would not pay.", asked);
 }
 
 void summarise_frames(const Correlator& correlator, const StructureSampler& structure, Summary& summary) {
