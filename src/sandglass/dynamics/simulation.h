@@ -48,7 +48,7 @@ class Simulation {
   [[nodiscard]] const Tally& tally() const;
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] bool conserves_momentum() const;  ///< single kicks do not
-  [[nodiscard]] unsigned threads() const;  ///< that are used, at most tuning.threads
+  [[nodiscard]] unsigned threads() const;         ///< that are used, at most tuning.threads
 
   /// A copy of the run at this moment; a new Simulation made from it goes on with the same bits. A Simulation that is
   /// no longer needed (std::move) frees its tables first.
