@@ -50,6 +50,19 @@ class Calendar {
     if (window_of(t) > window_) window_ = window_of(t);
   }
 
+  /// Forgets all entries. Time goes on from where it is, and the memory is kept.
+  void clear() {
+    for (std::uint32_t& chain : chains_) chain = no_chunks;
+    chunks_.clear();
+    free_ = none;
+    fetching_ = no_chunks;
+    for (std::size_t i = 0; i < late_count_; ++i) late_times_[i] = nothing;
+    late_count_ = 0;
+    late_soonest_ = nothing;
+    head_ = 0;
+    for (std::size_t i = 0; i < beyond_end; ++i) sorted_[i] = {nothing, 0, 0};
+  }
+
   /// Takes out and returns the slot whose event is the earliest and not after `limit`; no_disk if there is none.
   /// `before(a, b)` orders two slots whose events are at the same time; where the tables do not fit into the cache,
   /// `ahead(slot)` and `soon(slot)` are told whose events come some twenty and ten events later.

@@ -178,8 +178,8 @@ void Strip::end_pass() {
   concerned_.clear();
 }
 
-void Strip::remake_calendar(Calendar calendar) {
-  calendar_ = std::move(calendar);
+void Strip::remake_calendar() {
+  calendar_.clear();
   neighbours_.refresh();
   neighbours_.grid().visit_rows(core_.first, core_.count, [this](std::uint32_t i) {
     const Record& disk = records_[i];

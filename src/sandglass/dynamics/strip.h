@@ -64,8 +64,8 @@ class alignas(128) Strip {
   [[nodiscard]] std::size_t left() const { return left_.size(); }
   [[nodiscard]] std::uint32_t resumed() const { return resumed_; }
   [[nodiscard]] bool owns(std::uint32_t i) const { return whole_ || core_.hold(row(i)); }
-  /// A calendar with what comes next for the strip's own disks.
-  void remake_calendar(Calendar calendar);
+  /// Enters what comes next for the strip's own disks, and forgets all else.
+  void remake_calendar();
   [[nodiscard]] bool failed() const { return failed_; }
   [[nodiscard]] bool too_fast() const { return too_fast_; }
   void enter_calendar(std::uint32_t i) { calendar_.push(records_[i].next_time, i); }

@@ -73,10 +73,11 @@ void IsaEngine::divide() {
   const double windows = (whole_.neighbours().grid().height(lane) - 2 * tables_.leash) / way();
   windows_between_copies_ = windows < 24 ? windows > 1 ? static_cast<unsigned>(windows) : 1 : 24;
   look_for_top_speed();
-  const double window = window_length();
+  const double window = window_length(), lead = mean_lead();
   for (std::uint32_t s = 0; s < n; ++s) {
     const std::uint32_t from = border(s) - lane / 2 + lane, to = border(s + 1) - lane / 2;
     first_[s] = Strip(tables_, {from, to - from, side}, reach_, lane);
+    first_[s].set_calendar(calendar_for(lead, tables_.size / n));
     lanes_[s] = {(border(s) + side - lane / 2) % side, lane, side};
     const std::uint32_t below = (s == 0 ? middle(n - 1) : middle(s - 1) + side) - wide_lane / 2 + wide_lane;
     const std::uint32_t above = middle(s) + side - wide_lane / 2;
@@ -178,13 +179,12 @@ void IsaEngine::keep() {
     kept_records_ = Array<Record>(size);
     kept_cold_ = Array<ColdRecord>(size);
   }
-  const double lead = mean_lead();
   crew->work(strips_, [&](unsigned s) {
     for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i) {
       kept_records_[i] = tables_.records[i];
       kept_cold_[i] = tables_.cold[i];
     }
-    first_[s].remake_calendar(calendar_for(lead, size / threads));
+    first_[s].remake_calendar();
     shifted_[s].clear_outbox();
   });
   whole_.clear_outbox();
