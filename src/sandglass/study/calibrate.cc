@@ -66,10 +66,10 @@ void Calibrator::advance_one_beat() {
   simulation_.make_frame(frame_);
   take_snapshot(frame_, population_, snapshot_);
   temperature_sum_ += temperatures(snapshot_, population_).all;
-  if (beats_in_window_ == beats_of_window()) end_window();
 }
 
-void Calibrator::end_window() {
+bool Calibrator::end_window() {
+  if (beats_in_window_ < beats_of_window()) return false;
   const auto measured = static_cast<double>(beats_of_window() - beats_before_measuring());
   const auto collisions = static_cast<double>(simulation_.tally().collisions() - collisions_before_);
   const double ratio = goal_.temperature / (temperature_sum_ / measured);
@@ -94,10 +94,11 @@ void Calibrator::end_window() {
   }
   ++window_;
   beats_in_window_ = 0;
-  if (done()) return;
+  if (done()) return true;
   State state = simulation_.state();
   change_drive(state, result_.frequency, result_.amplitude);
   resume_from(std::move(state));
+  return true;
 }
 
 std::vector<Field> Calibration::fields() {
@@ -128,6 +129,7 @@ Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& 
   while (!calibrator.done()) {
     report_progress(progress, "calibrating the drive", calibrator.fraction());  // also where the caller may stop it
     calibrator.advance_one_beat();
+    calibrator.end_window();
   }
   report_progress(progress, "calibrating the drive", 1);
   return calibrator.result();

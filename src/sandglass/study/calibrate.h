@@ -51,6 +51,8 @@ class Calibrator {
 
   [[nodiscard]] bool done() const { return done_ == 1; }
   void advance_one_beat();
+  /// To be called after each beat: whether it was the last of a window, at which the drive has changed.
+  bool end_window();
   [[nodiscard]] const Calibration& result() const { return result_; }
   /// Of the work, if all windows should be needed.
   [[nodiscard]] double fraction() const;
@@ -73,7 +75,6 @@ class Calibrator {
   [[nodiscard]] bool rough() const;
   [[nodiscard]] std::uint64_t beats_before_measuring() const;
   [[nodiscard]] std::uint64_t beats_of_window() const;
-  void end_window();
 
   CalibrationGoal goal_;
   double error_;           // relative, of T, to be reached

@@ -129,7 +129,7 @@ class PointRun {
   std::optional<Simulation> simulation_;
   std::optional<Measurement> measurement_;
   std::optional<FrameWriter> frames_;
-  Watch watch_;  // the calibration, whose run is thrown away, is only sampled
+  Watch watch_{config_.run.self_check};
   RunFacts facts_;
 
   std::uint64_t format_ = checkpoint_format;
@@ -191,6 +191,7 @@ void PointRun::calibrate() {
   while (!calibrator_->done() && !stop_requested()) {
     report_progress(monitor_.progress, "calibrating the drive", calibrator_->fraction());
     watched_beat([this] { calibrator_->advance_one_beat(); });
+    if (calibrator_->end_window()) watch_ = Watch(config_.run.self_check);
     checkpoint_now_and_then();
   }
   facts_.calibration = calibrator_->result();
