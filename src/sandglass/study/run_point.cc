@@ -21,6 +21,7 @@
 #include "sandglass/io/state_file.h"
 #include "sandglass/io/trajectory.h"
 #include "sandglass/study/calibrate.h"
+#include "sandglass/study/frame_writer.h"
 #include "sandglass/study/measurement.h"
 #include "sandglass/study/start.h"
 #include "sandglass/study/summarise.h"
@@ -37,40 +38,6 @@ constexpr std::uint64_t checkpoint_format = 2;
 struct Stopped {};
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-/// An Observer that stores the frames of the trajectory, evenly spaced over the measured stretch, both ends included.
-class FrameWriter {
- public:
-  FrameWriter(std::filesystem::path path, std::uint64_t frames, double box_length)
-      : path_(std::move(path)), frames_(frames), box_length_(box_length) {}
-
-  void begin(const MeasurementPlan& plan) { plan_ = plan; }
-
-  [[nodiscard]] double next_sample() const {
-    if (!plan_ || written_ >= frames_) return std::numeric_limits<double>::infinity();
-    if (frames_ == 1) return plan_->end();
-    const double step = (plan_->end() - plan_->start) / static_cast<double>(frames_ - 1);
-    return written_ + 1 == frames_ ? plan_->end() : plan_->start + static_cast<double>(written_) * step;
-  }
-  void sample(const Frame& frame) {
-    const double collisions = frame.collisions_per_disk * static_cast<double>(frame.size()) / 2;
-    write_frame(path_, written_++, std::llround(collisions), frame, box_length_);
-  }
-  void merge(const FrameWriter&) {}  // two trajectories stay two files
-  /// What was written is on the disk before a checkpoint says so.
-  void sync() const {
-    if (written_ > 0) sync_file(path_);
-  }
-  [[nodiscard]] std::vector<Field> fields() { return {{"written", &written_}}; }
-  [[nodiscard]] std::vector<Dataset> results() const { return {}; }
-
- private:
-  std::filesystem::path path_;
-  std::uint64_t frames_, written_ = 0;
-  double box_length_;
-  std::optional<MeasurementPlan> plan_;
-};
-static_assert(Observer<FrameWriter>);
 
 /// Refuses to go on with a run of another configuration, `held`.
 void check_same_run(const Config& config, const Config& held, const RunFolder& folder) {
