@@ -132,10 +132,10 @@ void unpack(const Json& json, T& value) {
     if (!json.is_object()) throw InputError("the errors are not listed by name");
     for (const auto& [name, error] : json.items()) value.emplace_back(name, number_or_unknown(error));
   } else if constexpr (std::is_same_v<T, RelaxationTimes>) {
-    for (const auto& [name, time] : json.items()) {
-      const auto member = [&](const char* key) { return number_or_unknown(time.at(key)); };
-      value.push_back(
-          {std::strtod(name.c_str(), nullptr), member("small"), member("error"), member("big"), member("big_error")});
+    for (const auto& entry : json.items()) {
+      const auto member = [&](const char* key) { return number_or_unknown(entry.value().at(key)); };
+      value.push_back({std::strtod(entry.key().c_str(), nullptr), member("small"), member("error"), member("big"),
+                       member("big_error")});
     }
   } else {
     value = json.get<T>();
