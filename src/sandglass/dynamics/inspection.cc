@@ -32,9 +32,11 @@ Fault IsaEngine::fault_of(std::uint32_t i) {
     if (partner.partner != i || partner.next_time != disk.next_time || partner.next == disk.next)
       return Fault::one_sided;
   }
-  const double dx = whole_.neighbours().grid().offset(cold.centre.x, std::fma(disk.vx, flight, disk.x));
-  const double dy = whole_.neighbours().grid().offset(cold.centre.y, std::fma(disk.vy, flight, disk.y));
-  if (std::sqrt(dx * dx + dy * dy) > tables_.leash + 1e-9) return Fault::astray;
+  const Grid& grid = whole_.neighbours().grid();
+  const double dx = grid.offset(cold.centre.x, std::fma(disk.vx, flight, disk.x));
+  const double dy = grid.offset(cold.centre.y, std::fma(disk.vy, flight, disk.y));
+  // The grid rounds positions, in a large box by more than anything else; the leash leaves room for that.
+  if (std::sqrt(dx * dx + dy * dy) > tables_.leash + 1e-9 + 4 * grid.unit()) return Fault::astray;
   return Fault::none;
 }
 
