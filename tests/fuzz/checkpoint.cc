@@ -43,11 +43,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size >= seal_size) seal_file(file.path());
   read_or_refuse([&] {
     std::uint64_t measuring = 0;
-    const State state = read_checkpoint(file.path(), {{"run", {{"measuring", &measuring}}}}).state;
-    Measurement measurement(state, beat);
-    read_checkpoint(file.path(), {measurement.plan_fields()});
+    const Checkpoint checkpoint = read_checkpoint(file.path(), {{"run", {{"measuring", &measuring}}}});
+    Measurement measurement(checkpoint.state, beat);
+    restore_fields(checkpoint, {measurement.plan_fields()});
     measurement.prepare_restore(measuring == 1, small_config());
-    read_checkpoint(file.path(), measurement.fields());
+    restore_fields(checkpoint, measurement.fields());
     measurement.finish_restore();
     (void)measurement.results();
     if (measurement.begun()) (void)measurement.correlator().next_sample();

@@ -77,6 +77,14 @@ std::string object_of(const FieldGroup& group, const Field& field) {
   return "/fields/" + group.first + "/" + field.name;
 }
 
+void restore(const Hdf5File& file, const std::vector<FieldGroup>& groups) {
+  for (const FieldGroup& group : groups) {
+    for (const Field& field : group.second) {
+      std::visit([&](auto* target) { read_field(file, object_of(group, field), target); }, field.target);
+    }
+  }
+}
+
 /// The file to go on from: the newest that is whole.
 std::filesystem::path choose(const std::filesystem::path& path) {
   try {
@@ -131,13 +139,13 @@ void write_checkpoint(const std::filesystem::path& path, const State& state, con
 Checkpoint read_checkpoint(const std::filesystem::path& path, const std::vector<FieldGroup>& groups) {
   const std::filesystem::path chosen = choose(path);
   const Hdf5File file = Hdf5File::open(chosen);
-  Checkpoint checkpoint{read_state(file), file.read_text("/config", longest_config), chosen != path};
-  for (const FieldGroup& group : groups) {
-    for (const Field& field : group.second) {
-      std::visit([&](auto* target) { read_field(file, object_of(group, field), target); }, field.target);
-    }
-  }
+  Checkpoint checkpoint{read_state(file), file.read_text("/config", longest_config), chosen != path, chosen};
+  restore(file, groups);
   return checkpoint;
+}
+
+void restore_fields(const Checkpoint& checkpoint, const std::vector<FieldGroup>& groups) {
+  restore(Hdf5File::open(checkpoint.file), groups);
 }
 
 }  // namespace sandglass

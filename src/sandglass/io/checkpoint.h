@@ -23,12 +23,16 @@ struct Checkpoint {
   State state;
   std::string config_toml;
   bool from_previous = false;  ///< the newest one was missing or damaged, this is the one before it
+  std::filesystem::path file;  ///< where it was found, its checksum verified
 };
 
 /// Reads the checkpoint at `path` or, where that is missing or damaged, the previous one, and restores the groups that
 /// are given (a subset will do) into their fields. A vector that the observer has allocated must have its size in the
 /// file; an empty one takes the size found. Throws InputError when neither can be used.
 Checkpoint read_checkpoint(const std::filesystem::path& path, const std::vector<FieldGroup>& groups);
+
+/// Restores more groups of a checkpoint that has been read: those whose size is only known by then.
+void restore_fields(const Checkpoint& checkpoint, const std::vector<FieldGroup>& groups);
 
 /// Whether there is a checkpoint, or a previous one, to go on from.
 bool has_checkpoint(const std::filesystem::path& path);

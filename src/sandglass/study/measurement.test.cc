@@ -48,9 +48,9 @@ std::string complaint(const std::string& group, const std::string& field, T valu
 
   return message_of<InputError>([&] {
     Measurement restored(state, beat);
-    read_checkpoint(path, {restored.plan_fields()});
+    const Checkpoint checkpoint = read_checkpoint(path, {restored.plan_fields()});
     restored.prepare_restore(true, small_config());
-    read_checkpoint(path, restored.fields());
+    restore_fields(checkpoint, restored.fields());
     restored.finish_restore();
   });
 }

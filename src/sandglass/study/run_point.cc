@@ -184,34 +184,35 @@ void PointRun::begin_equilibrating(State start) {
 }
 
 void PointRun::resume() {
-  const Checkpoint found = read_checkpoint(folder_.checkpoint(), {{"run", {{"format", &format_}}}});
+  Checkpoint checkpoint = read_checkpoint(folder_.checkpoint(), {{"run", {{"format", &format_}}}});
   if (format_ != checkpoint_format)
     throw InputError(fmt::format(
         "the checkpoint in {} was written by another version of sandglass: finish the run with that one, or "
         "start a new run from its state with prepare.method = \"file\"",
         folder_.path().string()));
-  check_same_run(config_, read_config_text(found.config_toml, "the checkpoint", folder_.path()), folder_);
+  check_same_run(config_, read_config_text(checkpoint.config_toml, "the checkpoint", folder_.path()), folder_);
   if (!std::filesystem::exists(folder_.config())) write_whole(folder_.config(), config_to_toml(config_));
-  const State probe = read_checkpoint(folder_.checkpoint(), {own_fields()}).state;
+  restore_fields(checkpoint, {own_fields()});
   earlier_wall_seconds_ = facts_.wall_seconds;
   if (calibrating_ == 1) {
     begin_calibrating(start_state(monitor_.progress));
-    calibrator_->resume_from(read_checkpoint(folder_.checkpoint(), {{"calibrator", calibrator_->fields()}}).state);
+    restore_fields(checkpoint, {{"calibrator", calibrator_->fields()}});
+    calibrator_->resume_from(std::move(checkpoint.state));
     log("resumed in the calibration of the drive");
     return;
   }
-  measurement_.emplace(probe, beat_);
-  frames_.emplace(folder_.trajectory(), config_.output.trajectory_frames, probe.box_length);
-  read_checkpoint(folder_.checkpoint(), {measurement_->plan_fields()});
+  measurement_.emplace(checkpoint.state, beat_);
+  frames_.emplace(folder_.trajectory(), config_.output.trajectory_frames, checkpoint.state.box_length);
+  restore_fields(checkpoint, {measurement_->plan_fields()});
   measurement_->prepare_restore(measuring_ == 1, config_);
   std::vector<FieldGroup> groups = measurement_->fields();
   groups.push_back({"frames", frames_->fields()});
   groups.push_back({"calibration", facts_.calibration.fields()});
-  Checkpoint checkpoint = read_checkpoint(folder_.checkpoint(), groups);
+  restore_fields(checkpoint, groups);
   measurement_->finish_restore();
   if (measuring_ == 1) frames_->begin(measurement_->plan());
   if (config_.output.trajectory_frames > 0 && !std::filesystem::exists(folder_.trajectory())) {
-    create_trajectory(folder_.trajectory(), probe, config_.output.trajectory_frames);
+    create_trajectory(folder_.trajectory(), checkpoint.state, config_.output.trajectory_frames);
     log("trajectory.h5 was gone: made again, without the frames before this point");
   }
   simulation_.emplace(std::move(checkpoint.state), tuning_);
