@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sandglass/core/random.h"
+#include "sandglass/observe/scattered_disks.test.h"
 
 using namespace sandglass;
 
@@ -24,16 +24,7 @@ System system_of(const State& state) {
 }
 
 System random_binary(std::size_t n, double box_length, std::uint64_t seed) {
-  State state;
-  state.box_length = box_length;
-  state.disks.resize(n);
-  for (std::size_t id = 0; id < n; ++id) {
-    const auto words = random_words(seed, Stream::positions, id, 0);
-    state.disks[id].x = box_length * uniform(words[0]);
-    state.disks[id].y = box_length * uniform(words[1]);
-    state.disks[id].species = words[2] & 1 ? big : small;
-  }
-  return system_of(state);
+  return system_of(scattered_disks(n, box_length, seed));
 }
 
 }  // namespace

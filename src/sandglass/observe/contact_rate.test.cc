@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sandglass/core/random.h"
+#include "sandglass/observe/scattered_disks.test.h"
 
 using namespace sandglass;
 
@@ -13,16 +13,7 @@ namespace {
 
 // Points that know nothing of each other: any two pass the distance r of each other at a rate that follows by hand.
 State ideal_gas(std::size_t n, std::uint64_t seed) {
-  State state;
-  state.box_length = 100;
-  state.seed = seed;
-  state.disks.resize(n);
-  for (std::size_t id = 0; id < n; ++id) {
-    const auto words = random_words(seed, Stream::positions, id, 0);
-    state.disks[id].x = 100 * uniform(words[0]);
-    state.disks[id].y = 100 * uniform(words[1]);
-    state.disks[id].species = id % 3 == 0 ? big : small;
-  }
+  State state = scattered_disks(n, 100, seed);
   draw_velocities(state, 2);
   return state;
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "sandglass/core/random.h"
+#include "sandglass/observe/scattered_disks.test.h"
 
 using namespace sandglass;
 
@@ -17,18 +18,9 @@ struct System {
   Population population;
 };
 
-// Uniform points with Gaussian velocities of temperature 1; every third one is big.
+// Uniform points with Gaussian velocities of temperature 1.
 System gas(std::size_t n, double box_length, std::uint64_t seed) {
-  State state;
-  state.box_length = box_length;
-  state.seed = seed;
-  state.disks.resize(n);
-  for (std::size_t id = 0; id < n; ++id) {
-    const auto words = random_words(seed, Stream::positions, id, 0);
-    state.disks[id].x = box_length * uniform(words[0]);
-    state.disks[id].y = box_length * uniform(words[1]);
-    state.disks[id].species = id % 3 == 1 ? big : small;
-  }
+  State state = scattered_disks(n, box_length, seed);
   draw_velocities(state, 1);
   Frame frame;
   make_frame(state, frame);

@@ -4,24 +4,14 @@
 
 #include <cmath>
 
-#include "sandglass/core/random.h"
+#include "sandglass/observe/scattered_disks.test.h"
 
 using namespace sandglass;
 
 namespace {
 
-// Species drawn at random, so that they are mixed along the ids.
 State random_state(std::size_t n, std::uint64_t seed) {
-  State state;
-  state.box_length = 40;
-  state.seed = seed;
-  state.disks.resize(n);
-  for (std::size_t id = 0; id < n; ++id) {
-    const auto words = random_words(seed, Stream::positions, id, 0);
-    state.disks[id].x = 40 * uniform(words[0]);
-    state.disks[id].y = 40 * uniform(words[1]);
-    state.disks[id].species = words[2] & 1 ? big : small;
-  }
+  State state = scattered_disks(n, 40, seed);
   draw_velocities(state, 1.5);
   for (Disk& disk : state.disks) disk.vx += 3;  // a moving centre of mass
   return state;

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "sandglass/core/random.h"
 #include "sandglass/observe/cells.h"
+#include "sandglass/observe/scattered_disks.test.h"
 
 using namespace sandglass;
 
@@ -18,18 +18,8 @@ struct System {
   Population population;
 };
 
-// Uniform points, unwrapped over several boxes; every third one is big.
 System ideal_gas(std::size_t n, double box_length, std::uint64_t seed) {
-  State state;
-  state.box_length = box_length;
-  state.disks.resize(n);
-  for (std::size_t id = 0; id < n; ++id) {
-    const auto words = random_words(seed, Stream::positions, id, 0);
-    state.disks[id].x = box_length * uniform(words[0]);
-    state.disks[id].y = box_length * uniform(words[1]);
-    state.disks[id].image_x = static_cast<int>(words[2] % 5) - 2;
-    state.disks[id].species = id % 3 == 1 ? big : small;
-  }
+  const State state = scattered_disks(n, box_length, seed);
   System system{{}, population_of(state)};
   make_frame(state, system.frame);
   return system;

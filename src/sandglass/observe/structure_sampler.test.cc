@@ -9,7 +9,7 @@
 #include <string>
 
 #include "sandglass/core/errors.h"
-#include "sandglass/core/random.h"
+#include "sandglass/observe/scattered_disks.test.h"
 
 using namespace sandglass;
 
@@ -18,16 +18,7 @@ namespace {
 constexpr double length = 50;
 
 State gas(std::uint64_t seed) {
-  State state;
-  state.box_length = length;
-  state.seed = seed;
-  state.disks.resize(400);
-  for (std::size_t id = 0; id < state.size(); ++id) {
-    const auto words = random_words(seed, Stream::positions, id, 0);
-    state.disks[id].x = length * uniform(words[0]);
-    state.disks[id].y = length * uniform(words[1]);
-    state.disks[id].species = id % 3 == 1 ? big : small;
-  }
+  State state = scattered_disks(400, length, seed);
   draw_velocities(state, 1);
   return state;
 }
