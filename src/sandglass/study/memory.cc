@@ -14,8 +14,8 @@
 namespace sandglass {
 namespace {
 
-// Measured (greatest resident set of a run with all measurements): 20 MB and 670 bytes per disk, at N = 4 * 10^5.
-constexpr double bytes_of_program = 2e7, bytes_per_disk = 670;
+// Measured: the greatest resident sets of runs with all measurements at N = 10^5 and 4 * 10^5, 94 and 307 MB.
+constexpr double bytes_of_program = 2.4e7, bytes_per_disk = 710;
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
