@@ -198,6 +198,8 @@ class BruteForce(program.Case):
             self.check(group["non_gaussian"], *jackknife(lambda m, f, n: f / (2 * m**2) - 1, msd, fourth))
             vacf = self.by_block(lambda a, b: (v[a] * v[b])[members].sum(axis=1).mean())
             self.check(group["velocity_autocorrelation"], *mean_and_error(vacf))
+            running = self.by_block(lambda a, b: (v[a] * (r[b] - r[a]))[members].sum(axis=1).mean() / 2)
+            self.check(group["running_diffusion"], *mean_and_error(running))
             equal = [(v[b * STEPS:(b + 1) * STEPS, members] ** 2).sum(axis=2).mean() for b in range(BLOCKS)]
             self.close(group["velocity_autocorrelation/equal_time_value"][0], numpy.mean(equal))
             for i, wavenumber in enumerate(WAVENUMBERS):

@@ -85,6 +85,8 @@ def write_run(folder, eta, eps, seed):
         file.measured(f"{group}/velocity_autocorrelation", axes, 2 / mass * velocity(eta, eps, s), 2e-4)
         file.put(f"{group}/velocity_autocorrelation/equal_time_value", 2 / mass)
         file.put(f"{group}/velocity_autocorrelation/equal_time_error", 0.001)
+        running = np.gradient(msd, t) / 4
+        file.measured(f"{group}/running_diffusion", axes, running, NOISE * running)
         k = np.array([0.5, 3.0])
         gaussian = np.exp(-k[:, None] ** 2 * msd / 4)
         slow = max(0, eta - 0.7) * 3

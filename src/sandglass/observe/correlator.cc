@@ -100,6 +100,7 @@ void Correlator::evaluate(std::size_t level, std::size_t lag) {
     sum(overlapping, species).add(overlaps[species]);
     sum(overlap_square, species).add(overlaps[species] * overlaps[species]);
     add_velocity_products(origin, now_, range, sum(velocity, species));
+    add_velocity_displacements(origin, now_, range, scale, sum(velocity_displacement, species));
     for (std::size_t k = 0; k < shells_.size(); ++k)
       add_scattering(origin, now_, range, shells_[k], population_.box_length, sum(scattering + k, species));
   }
@@ -200,7 +201,8 @@ double Correlator::sum(std::size_t interval, std::size_t lag, std::size_t quanti
   if (group != Group::small) sum.add(sums_[slot(interval, lag, quantity, big)]);
   const double scale = displacement_scale(schedule_.lags[lag]), scale2 = scale * scale;
   const bool squared = quantity == square || quantity == relative;
-  return sum.value() / (squared ? scale2 : quantity == fourth ? scale2 * scale2 : 1.0);
+  const bool linear = quantity == velocity_displacement;
+  return sum.value() / (squared ? scale2 : quantity == fourth ? scale2 * scale2 : linear ? scale : 1.0);
 }
 
 std::uint64_t Correlator::counted(std::size_t interval, std::size_t histogram, std::size_t bin, Group group) const {
@@ -220,6 +222,12 @@ IntervalSeries Correlator::per_disk(std::size_t quantity, Group group) const {
 IntervalSeries Correlator::mean_square_displacement(Group group) const { return per_disk(square, group); }
 IntervalSeries Correlator::mean_fourth_displacement(Group group) const { return per_disk(fourth, group); }
 IntervalSeries Correlator::velocity_autocorrelation(Group group) const { return per_disk(velocity, group); }
+IntervalSeries Correlator::running_diffusion(Group group) const {
+  IntervalSeries series = per_disk(velocity_displacement, group);
+  for (auto* values : {&series.means, &series.totals})
+    for (double& value : *values) value /= 2;
+  return series;
+}
 IntervalSeries Correlator::cage_relative_displacement(Group group) const { return per_disk(relative, group); }
 IntervalSeries Correlator::overlap(Group group) const { return per_disk(overlapping, group); }
 IntervalSeries Correlator::self_intermediate_scattering(Group group, std::size_t wavenumber) const {

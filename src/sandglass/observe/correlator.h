@@ -30,16 +30,19 @@ class Correlator {
   void merge(const Correlator& other);
   [[nodiscard]] std::vector<Field> fields();
   [[nodiscard]] bool valid() const;  ///< whether the place in the plan can be (after fields() were restored)
-  /// /dynamics/{all,small,big}/{mean_square_displacement, velocity_autocorrelation, self_intermediate_scattering,
-  /// gaussian_approximation, non_gaussian, cage_relative_displacement, overlap, susceptibility, van_hove, mobility}:
-  /// docs/file-formats.md. Over finished intervals: `error` is the standard error over them, NaN with fewer than two;
-  /// `count` the number of displacements averaged. Groups without disks are left out.
+  /// /dynamics/{all,small,big}/{mean_square_displacement, velocity_autocorrelation, running_diffusion,
+  /// self_intermediate_scattering, gaussian_approximation, non_gaussian, cage_relative_displacement, overlap,
+  /// susceptibility, van_hove, mobility}: docs/file-formats.md. Over finished intervals: `error` is the standard error
+  /// over them, NaN with fewer than two; `count` the number of displacements averaged. Groups without disks are left
+  /// out.
   [[nodiscard]] std::vector<Dataset> results() const;
 
   /// The measured quantities by name, for fits and for ageing (each interval apart).
   [[nodiscard]] IntervalSeries mean_square_displacement(Group group) const;
   [[nodiscard]] IntervalSeries mean_fourth_displacement(Group group) const;
   [[nodiscard]] IntervalSeries velocity_autocorrelation(Group group) const;
+  /// D(t) = <v(0) . dr(t)> / 2, half the integral of the velocity autocorrelation up to t.
+  [[nodiscard]] IntervalSeries running_diffusion(Group group) const;
   [[nodiscard]] IntervalSeries self_intermediate_scattering(Group group, std::size_t wavenumber) const;
   [[nodiscard]] IntervalSeries cage_relative_displacement(Group group) const;
   [[nodiscard]] IntervalSeries overlap(Group group) const;          ///< Q: the part of the disks with |dr| <= a
@@ -58,11 +61,12 @@ class Correlator {
     square = 0,
     fourth = 1,
     velocity = 2,
-    overlapping = 3,
-    overlap_square = 4,
-    overlap_product = 5,
-    relative = 6,
-    scattering = 7
+    velocity_displacement = 3,
+    overlapping = 4,
+    overlap_square = 5,
+    overlap_product = 6,
+    relative = 7,
+    scattering = 8
   };
   [[nodiscard]] std::size_t slot(std::size_t interval, std::size_t lag, std::size_t quantity, Species species) const;
   [[nodiscard]] std::size_t interval_size() const;

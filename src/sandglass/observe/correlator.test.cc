@@ -130,7 +130,7 @@ TEST_CASE("all quantities equal a brute-force evaluation on random frames") {
       const double start = 3.7 + static_cast<double>(interval) * 2.3;
       for (std::size_t lag = 0; lag < schedule.lags.size(); ++lag) {
         const std::uint64_t origins = schedule.level_of_lag[lag] == 0 ? 1 : plan.origins;
-        double square = 0, fourth = 0, velocity = 0, scattering = 0;
+        double square = 0, fourth = 0, velocity = 0, velocity_displacement = 0, scattering = 0;
         for (std::uint64_t k = 0; k < origins; ++k) {
           const double offset = static_cast<double>(k) * 2.3 / static_cast<double>(plan.origins);
           const double later = lag + 1 == schedule.lags.size() ? plan.interval_start(interval + 1)
@@ -141,6 +141,7 @@ TEST_CASE("all quantities equal a brute-force evaluation on random frames") {
             square += dx * dx + dy * dy;
             fourth += (dx * dx + dy * dy) * (dx * dx + dy * dy);
             velocity += a.vx[id] * b.vx[id] + a.vy[id] * b.vy[id];
+            velocity_displacement += a.vx[id] * dx + a.vy[id] * dy;
             // k = 2.5 in a box of 20: wanted 7.958 units; (8, 0), (0, 8) are nearest, then (5, 6) and (6, 5) with signs
             // at 7.810, 1.9 % away.
             const double unit = 2 * std::numbers::pi / 20;
@@ -158,6 +159,8 @@ TEST_CASE("all quantities equal a brute-force evaluation on random frames") {
             close(correlator.mean_fourth_displacement(Group::big).interval_mean(interval, lag), fourth / pairs, 1e5));
         RC_ASSERT(
             close(correlator.velocity_autocorrelation(Group::big).interval_mean(interval, lag), velocity / pairs, 1e2));
+        RC_ASSERT(close(correlator.running_diffusion(Group::big).interval_mean(interval, lag),
+                        velocity_displacement / (2 * pairs), 1e3));
         RC_ASSERT(close(correlator.self_intermediate_scattering(Group::big, 1).interval_mean(interval, lag),
                         scattering / pairs, 1));
       }
@@ -249,6 +252,7 @@ TEST_CASE("Ornstein-Uhlenbeck velocities: MSD, VACF, S_inc and alpha_2 as derive
   const auto& time = values(results, "/dynamics/all/mean_square_displacement/time");
   const auto& square = values(results, "/dynamics/all/mean_square_displacement/value");
   const auto& velocity = values(results, "/dynamics/all/velocity_autocorrelation/value");
+  const auto& running = values(results, "/dynamics/all/running_diffusion/value");
   const auto& alpha = values(results, "/dynamics/all/non_gaussian/value");
   const auto& scattered = values(results, "/dynamics/all/self_intermediate_scattering/value");
   const auto& gaussian = values(results, "/dynamics/all/gaussian_approximation/value");
@@ -263,6 +267,9 @@ TEST_CASE("Ornstein-Uhlenbeck velocities: MSD, VACF, S_inc and alpha_2 as derive
     const double exact = 4 / (gamma * gamma) * (gt - 1 + std::exp(-gt));
     CHECK(std::fabs(square[lag] / exact - 1) < 5 * 6.5e-3);
     CHECK(std::fabs(velocity[lag] - 2 * std::exp(-gt)) < 5 * 0.013);
+    // Half the integral of the VACF. v(0).dr / 2 has the variance (<v_x^2> <dx^2> + <v_x dx>^2) / 2 <= <dx^2> = exact /
+    // 2 (Cauchy and Schwarz; two components).
+    CHECK(std::fabs(running[lag] - (1 - std::exp(-gt)) / gamma) < 5 * std::sqrt(exact / 2 / 24000));
     CHECK(std::fabs(alpha[lag]) < 5 * 0.013);
     for (std::size_t k = 0; k < 2; ++k) {
       const double k2 = wavenumber[k] * wavenumber[k];

@@ -132,6 +132,7 @@ class Correlator::Results {
     add("velocity_autocorrelation/equal_time_value", {1}, {equal_time.value}, "R_s^2/t^2");
     add("velocity_autocorrelation/equal_time_error", {1}, {equal_time.error}, "R_s^2/t^2");
     add_intervals("velocity_autocorrelation", {series}, "R_s^2/t^2");
+    add("running_diffusion", estimates(self_.running_diffusion(group_)), "R_s^2/t");
   }
 
   void append_overlap() {

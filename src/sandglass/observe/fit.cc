@@ -108,44 +108,15 @@ Estimate decay_time(const IntervalSeries& series, double level) {
   });
 }
 
-namespace {
-
-/// Slope at point 1 of the parabola through three points.
-double middle_slope(double t0, double f0, double t1, double f1, double t2, double f2) {
-  const double left = (f1 - f0) / (t1 - t0), right = (f2 - f1) / (t2 - t1);
-  return (left * (t2 - t1) + right * (t1 - t0)) / (t2 - t0);
-}
-
-/// Integral of f over t from point 0 to point `last`: between two points h (f1 + f2) / 2 + h^2 (f1' - f2') / 12.
-template <class Value>
-double integral(const std::vector<double>& t, Value&& f, std::size_t last) {
-  const auto slope = [&](std::size_t i) {
-    if (i == 0 || i == last) {  // that of the parabola through the three points at the end
-      const std::size_t a = i == 0 ? 0 : last - 2;
-      const double middle = middle_slope(t[a], f(a), t[a + 1], f(a + 1), t[a + 2], f(a + 2));
-      const std::size_t near = i == 0 ? 0 : last - 1;
-      return 2 * (f(near + 1) - f(near)) / (t[near + 1] - t[near]) - middle;
-    }
-    return middle_slope(t[i - 1], f(i - 1), t[i], f(i), t[i + 1], f(i + 1));
-  };
-  double sum = 0;
-  for (std::size_t i = 0; i < last; ++i) {
-    const double h = t[i + 1] - t[i];
-    sum += h * (f(i) + f(i + 1)) / 2 + h * h * (slope(i) - slope(i + 1)) / 12;
-  }
-  return sum;
-}
-
-}  // namespace
-
-Estimate diffusion_from_velocities(const IntervalSeries& velocities, double t) {
-  std::size_t last = 0;
-  while (last + 1 < velocities.time.size() && velocities.time[last + 1] <= t * (1 + 1e-9)) ++last;
-  if (velocities.intervals == 0 || last < 2) return {};
-  return jackknife(velocities.intervals, [&](std::size_t left_out) {
-    return integral(
-               velocities.time, [&](std::size_t lag) { return velocities.mean(lag, left_out); }, last) /
-           2;
+Estimate value_at(const IntervalSeries& series, double t) {
+  // Within a rounding of the longest lag is at it.
+  const auto above = std::lower_bound(series.time.begin(), series.time.end(), t * (1 - 1e-9));
+  if (series.intervals == 0 || above == series.time.end()) return {};
+  const auto after = static_cast<std::size_t>(above - series.time.begin()), before = after > 0 ? after - 1 : 0;
+  const double t1 = series.time[before], t2 = series.time[after];
+  const double fraction = after > before ? std::fmin((t - t1) / (t2 - t1), 1) : 0;
+  return jackknife(series.intervals, [&](std::size_t left_out) {
+    return (1 - fraction) * series.mean(before, left_out) + fraction * series.mean(after, left_out);
   });
 }
 

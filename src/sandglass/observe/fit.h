@@ -1,4 +1,4 @@
-// Numbers read off a mean square displacement: exponents, passage times, diffusion.
+// Numbers read off time correlations: exponents, passage and decay times, diffusion.
 #pragma once
 
 #include "sandglass/observe/interval_series.h"
@@ -30,9 +30,7 @@ Estimate diffusion_coefficient(const IntervalSeries& series, double t, double sp
 /// first lag linearly in t); jackknife error. NaN when it never does.
 Estimate decay_time(const IntervalSeries& series, double level);
 
-/// D = (1/2) int_0^t <v(0).v(t')> dt' (Green and Kubo) up to the last lag within `t`, by piecewise cubics through the
-/// lags; jackknife error. The same as (1/4) d MSD / dt there, of which it is independent only in its noise: that of the
-/// correlations at long lags, which the error tells. NaN with fewer than two lags.
-Estimate diffusion_from_velocities(const IntervalSeries& velocities, double t);
+/// The series at t, interpolated linearly between the lags around it; jackknife error. NaN outside the lags.
+Estimate value_at(const IntervalSeries& series, double t);
 
 }  // namespace sandglass

@@ -122,22 +122,16 @@ TEST_CASE("decay time: linear in ln t, and in t before the first lag") {
   CHECK(std::fabs(time.value - 0.001 * std::exp(5)) < 5 * time.error);
 }
 
-TEST_CASE("Ornstein-Uhlenbeck: D = T / (m gamma) from displacements and from velocities") {
-  // VACF = 2 exp(-gamma t), MSD = (4 / gamma^2) (gamma t - 1 + exp(-gamma t)), D = 1 / gamma per unit of T / m.
-  const double gamma = 1.3;
-  const auto vacf = [&](double t) { return 2 * std::exp(-gamma * t); };
-  const auto msd = [&](double t) { return 4 / (gamma * gamma) * (gamma * t - 1 + std::exp(-gamma * t)); };
-  CHECK(diffusion_coefficient(correlation_of(msd, 5, 0, 1), 100).value == doctest::Approx(1 / gamma).epsilon(1e-9));
-  const Estimate exact = diffusion_from_velocities(correlation_of(vacf, 5, 0, 1), 100);
-  // The slopes of parabolas are off by h^2 f''' / 6, which counts because the steps h = 0.21 t grow by q = 1.21:
-  // (1 - 1 / q^2) / 72 int h^3 f''' dt = 6 * 0.0044 * 0.21^3 = 2.5e-4 of the integral; trapezia would be 0.6 % off.
-  CHECK(exact.value == doctest::Approx(1 / gamma).epsilon(4e-4));
-
-  // Noise 1e-3 at each lag t weighs 0.2 t / 2 in the integral: up to t = 10, 1e-3 * sqrt(sum (0.1 t)^2) = 1.7e-3.
-  const Estimate noisy = diffusion_from_velocities(correlation_of(vacf, 20, 1e-3 * std::sqrt(20.0), 2), 10);
-  CHECK(noisy.error == doctest::Approx(1.7e-3).epsilon(0.6));  // itself good to 16 %, and the sum is rough
-  CHECK(std::fabs(noisy.value - 1 / gamma) < 5 * noisy.error);
-  CHECK(std::isnan(diffusion_from_velocities({}, 10).value));
+TEST_CASE("a value between two lags is that of the line through them, with its error") {
+  const auto line = correlation_of([](double t) { return 3 + 2 * t; }, 5, 0, 1);
+  CHECK(value_at(line, 0).value == doctest::Approx(3).epsilon(1e-14));
+  CHECK(value_at(line, 0.37).value == doctest::Approx(3.74).epsilon(1e-12));
+  CHECK(value_at(line, line.time.back()).value == doctest::Approx(3 + 2 * line.time.back()).epsilon(1e-12));
+  CHECK(std::isnan(value_at(line, 1.01 * line.time.back()).value));
+  CHECK(std::isnan(value_at({}, 0).value));
+  // At a lag the error is that of its mean over the intervals.
+  const auto noisy = correlation_of([](double t) { return t; }, 12, 0.1, 3);
+  CHECK(value_at(noisy, noisy.time[7]).error == doctest::Approx(noisy.estimate(7).error).epsilon(1e-6));
 }
 
 TEST_CASE("intervals merged into blocks keep their means, and their number is bounded") {

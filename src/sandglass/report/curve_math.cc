@@ -108,17 +108,6 @@ Measured crossing(const Curve& curve, double level) {
   return {};
 }
 
-Measured integral(const Curve& curve, double y0) {
-  if (curve.x.size() < 2 || !(curve.x.front() > 0)) return {};
-  Measured sum{curve.x.front() * (y0 + curve.y.front()) / 2, error_at(curve, 0) * curve.x.front() / 2};
-  for (std::size_t i = 1; i < curve.x.size(); ++i) {
-    const double half = std::log(curve.x[i] / curve.x[i - 1]) / 2;
-    sum.value += half * (curve.y[i - 1] * curve.x[i - 1] + curve.y[i] * curve.x[i]);
-    sum.error += half * (error_at(curve, i - 1) * curve.x[i - 1] + error_at(curve, i) * curve.x[i]);
-  }
-  return sum;
-}
-
 Curve between(const Curve& curve, double from, double to) {
   Curve part = curve;
   for (auto column : {&Curve::x, &Curve::y, &Curve::error, &Curve::alternative_x}) {

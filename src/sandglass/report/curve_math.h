@@ -25,10 +25,6 @@ Measured value_at(const Curve& curve, double x);
 /// error of y / |slope|. NaN when it never does.
 Measured crossing(const Curve& curve, double level);
 
-/// Integral of y dx from 0 to the last point; before the first point y is the mean of `y0` and its first value.
-/// Trapezoids in ln x, of y x. The error adds those of all points: they come from the same velocities.
-Measured integral(const Curve& curve, double y0);
-
 /// The part of the curve with from <= x <= to.
 Curve between(const Curve& curve, double from, double to);
 

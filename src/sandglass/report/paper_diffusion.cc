@@ -147,14 +147,13 @@ struct Diffusion {
   double at = 0;
 };
 
-/// D = (1/2) int <v(t).v(0)> dt up to s = `at`, made a D per collision by the collision rate.
+/// D(t) = (1/2) int <v(t').v(0)> dt' up to s = `at`, made a D per collision by the collision rate.
 Measured green_kubo(const StatePoint& point, double at) {
-  const auto phi = small_curve(point, "velocity_autocorrelation");
-  const auto at_zero = numbers_of(point.results, "/dynamics/small/velocity_autocorrelation/equal_time_value");
+  const auto running = small_curve(point, "running_diffusion");
   const double rate = point.number("collision_rate").value;
-  if (!phi || at_zero.empty()) return {};
-  const Measured whole = integral(between(*phi, 0, at / rate), at_zero.front());
-  return {whole.value / (2 * rate), whole.error / (2 * rate)};
+  if (!running) return {};
+  const Measured d = value_at(*running, at / rate);
+  return {d.value / rate, d.error / rate};
 }
 
 Diffusion diffusion_of(const StatePoint& point) {

@@ -32,7 +32,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// What is kept in checkpoints changes with this number.
-constexpr std::uint64_t checkpoint_format = 2;
+constexpr std::uint64_t checkpoint_format = 3;
 
 /// Thrown out of the preparation when the run is asked to stop. There is nothing yet to go on from: it starts anew.
 struct Stopped {};

@@ -34,7 +34,7 @@ Summary::Diffusion diffusion_of(const Correlator& correlator, Group group) {
   const IntervalSeries displacements = correlator.mean_square_displacement(group);
   const double time = std::fmin(paper_collisions / rate, displacements.time.back());
   const Estimate slope = diffusion_coefficient(displacements, time);
-  const Estimate integral = diffusion_from_velocities(correlator.velocity_autocorrelation(group), time);
+  const Estimate integral = value_at(correlator.running_diffusion(group), time);
   return {slope.value / rate, slope.error / rate, time * rate, integral.value / rate, integral.error / rate};
 }
 
