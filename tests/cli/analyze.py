@@ -196,10 +196,12 @@ class BruteForce(program.Case):
             counts = [len(self.pairs(lag)) * members.sum() for lag in lags()]
             numpy.testing.assert_array_equal(group["mean_square_displacement/count"][:], counts)
             self.check(group["non_gaussian"], *jackknife(lambda m, f, n: f / (2 * m**2) - 1, msd, fourth))
+            self.close(group["non_gaussian/interval_value"][:], fourth / (2 * msd**2) - 1)
             vacf = self.by_block(lambda a, b: (v[a] * v[b])[members].sum(axis=1).mean())
             self.check(group["velocity_autocorrelation"], *mean_and_error(vacf))
             running = self.by_block(lambda a, b: (v[a] * (r[b] - r[a]))[members].sum(axis=1).mean() / 2)
             self.check(group["running_diffusion"], *mean_and_error(running))
+            self.close(group["running_diffusion/interval_value"][:], running)
             equal = [(v[b * STEPS:(b + 1) * STEPS, members] ** 2).sum(axis=2).mean() for b in range(BLOCKS)]
             self.close(group["velocity_autocorrelation/equal_time_value"][0], numpy.mean(equal))
             for i, wavenumber in enumerate(WAVENUMBERS):

@@ -40,6 +40,15 @@ Curve non_gaussian(const IntervalSeries& square, const IntervalSeries& fourth) {
   return curve;
 }
 
+IntervalSeries non_gaussian_by_interval(const IntervalSeries& square, const IntervalSeries& fourth) {
+  IntervalSeries series = fourth;
+  for (std::size_t i = 0; i < series.means.size(); ++i) {
+    const double mean = square.means[i];
+    series.means[i] = series.means[i] / (2 * mean * mean) - 1;
+  }
+  return series;
+}
+
 // chi_4 = N n / (n - 1) (<Q^2> - <Q>^2) over n pairs of moments: the variance that independent ones would have,
 // unbiased.
 Curve susceptibility(const IntervalSeries& overlap, const IntervalSeries& squared, std::size_t disks,
@@ -71,10 +80,12 @@ class Correlator::Results {
   void append() {
     const IntervalSeries displacements = self_.mean_square_displacement(group_);
     const Curve displacement = estimates(displacements);
-    add("mean_square_displacement", displacement, "R_s^2");
-    add_intervals("mean_square_displacement", {displacements}, "R_s^2");
-    add("non_gaussian", non_gaussian(displacements, self_.mean_fourth_displacement(group_)), "");
-    add("cage_relative_displacement", estimates(self_.cage_relative_displacement(group_)), "R_s^2", 1);
+    const IntervalSeries fourth = self_.mean_fourth_displacement(group_);
+    add_series("mean_square_displacement", displacements, "R_s^2");
+    add("non_gaussian", non_gaussian(displacements, fourth), "");
+    add_intervals("non_gaussian", {non_gaussian_by_interval(displacements, fourth)}, "");
+    add_series("cage_relative_displacement", self_.cage_relative_displacement(group_), "R_s^2", 1);
+    add_series("running_diffusion", self_.running_diffusion(group_), "R_s^2/t");
     append_velocity();
     append_overlap();
     append_mobility();
@@ -109,6 +120,20 @@ class Correlator::Results {
     results_.push_back({place(name + "/count"), shape, std::move(count), ""});
   }
 
+  /// Means, errors and each interval apart; the rest as for add().
+  void add_series(const std::string& name, const IntervalSeries& series, const char* unit, std::uint64_t moments = 0,
+                  std::size_t disks = 0) {
+    add(name, estimates(series), unit, moments, disks);
+    add_intervals(name, {series}, unit);
+  }
+
+  /// An attribute of the value of a quantity that is there.
+  void note(const std::string& name, const char* attribute, double value) {
+    const auto dataset = std::find_if(results_.rbegin(), results_.rend(),
+                                      [&](const Dataset& d) { return d.path == place(name + "/value"); });
+    dataset->attributes = {{attribute, value}};
+  }
+
   /// Each interval apart, or blocks of them: what ages shows here. Shape [interval, lag], or [interval, k, lag].
   void add_intervals(const std::string& name, const std::vector<IntervalSeries>& series, const char* unit) {
     const std::size_t lags = time_.size();
@@ -127,36 +152,28 @@ class Correlator::Results {
 
   void append_velocity() {
     const IntervalSeries series = self_.velocity_autocorrelation(group_);
-    add("velocity_autocorrelation", estimates(series), "R_s^2/t^2");
+    add_series("velocity_autocorrelation", series, "R_s^2/t^2");
     const Estimate equal_time = series.estimate(0);
     add("velocity_autocorrelation/equal_time_value", {1}, {equal_time.value}, "R_s^2/t^2");
     add("velocity_autocorrelation/equal_time_error", {1}, {equal_time.error}, "R_s^2/t^2");
-    add_intervals("velocity_autocorrelation", {series}, "R_s^2/t^2");
-    add("running_diffusion", estimates(self_.running_diffusion(group_)), "R_s^2/t");
   }
 
   void append_overlap() {
     const IntervalSeries overlap = self_.overlap(group_);
-    const auto note_cut_off = [&] {
-      for (auto dataset = results_.end() - 5; dataset != results_.end(); ++dataset)
-        if (dataset->path.ends_with("value")) dataset->attributes = {{"cutoff", self_.plan_.overlap_length}};
-    };
-    add("overlap", estimates(overlap), "");
-    note_cut_off();
+    add_series("overlap", overlap, "");
+    note("overlap", "cutoff", self_.plan_.overlap_length);
     add("susceptibility",
         susceptibility(overlap, self_.squared_overlap(group_), self_.population_.range(group_).size(),
                        self_.schedule_.origins),
         "");
-    note_cut_off();
+    note("susceptibility", "cutoff", self_.plan_.overlap_length);
   }
 
   void append_mobility() {
     for (const auto& [tail, name] :
          {std::pair{Mobility::fastest, "mobility/fastest"}, {Mobility::slowest, "mobility/slowest"}}) {
-      add(name, estimates(self_.mobility(group_, tail)), "R_s^2", 1, self_.mobility_.chosen(group_));
-      for (auto dataset = results_.end() - 5; dataset != results_.end(); ++dataset)
-        if (dataset->path.ends_with("value"))
-          dataset->attributes = {{"selection_time", self_.mobility_.selection_time()}};
+      add_series(name, self_.mobility(group_, tail), "R_s^2", 1, self_.mobility_.chosen(group_));
+      note(name, "selection_time", self_.mobility_.selection_time());
     }
   }
 

@@ -1,0 +1,88 @@
+"""Exponents of the mean square displacement of the small disks, against everything they might depend on.
+
+    PYTHONPATH=python python3 docs/reproduction/exponents.py campaigns/variations > exponents.csv
+
+One line a state point: ln MSD against ln t by least squares with equal weights over each range of t, of the MSD itself and
+of the cage-relative one; then over 1 < t < 10 in the first and the last third of the measured stretch (ageing), and over
+the range that would be 1 < t < 10 if the temperature were 0.73, as the formula for one species gives it. Errors: jackknife
+over the intervals of each run, or, where it is larger, the scatter of independent starts.
+"""
+import csv
+import sys
+from pathlib import Path
+
+import numpy as np
+
+import sandglass
+
+RANGES = [(0.1, 1), (1, 10), (3, 30), (10, 100)]
+MISTAKEN_TEMPERATURE = 0.73
+COLUMNS = ["N", "eps", "partner", "reach", "frequency", "jammed_fraction", "starts", "waited", "rate"]
+
+
+def exponent(time, square, low, high):
+    """Slope of ln `square` against ln `time`; NaN where the lags do not fill the range."""
+    inside = (time >= low * 0.999) & (time <= high * 1.001) & (square > 0)
+    if inside.sum() < 3 or time[-1] < high * 0.999:
+        return np.nan
+    return np.polyfit(np.log(time[inside]), np.log(square[inside]), 1)[0]
+
+
+def jackknife(time, intervals, low, high):
+    """Exponent of the mean over `intervals`[interval, lag], and its standard error."""
+    n = len(intervals)
+    whole = exponent(time, intervals.mean(axis=0), low, high)
+    without = [exponent(time, np.delete(intervals, i, axis=0).mean(axis=0), low, high) for i in range(n)] if n > 1 else []
+    return whole, np.sqrt((n - 1) / n * np.sum((without - np.mean(without)) ** 2)) if n > 1 else np.nan
+
+
+def merged(values):
+    """Mean of (value, error) over independent starts, and the larger of its two errors."""
+    value, error = np.array(values).T
+    n = len(value)
+    within = np.sqrt(np.sum(error**2)) / n
+    between = value.std(ddof=1) / np.sqrt(n) if n > 1 else 0
+    return value.mean(), max(within, between)
+
+
+def exponents(run):
+    """{name: (value, error)} of one run."""
+    small = run["dynamics/small/mean_square_displacement"]
+    time, intervals = small["time"], small["interval_value"]
+    found = {f"{a:g}-{b:g}": jackknife(time, intervals, a, b) for a, b in RANGES}
+    cage = run["dynamics/small/cage_relative_displacement"]
+    for a, b in RANGES[1:2]:
+        found[f"cage {a:g}-{b:g}"] = exponent(cage["time"], cage["value"], a, b), np.nan
+    third = max(1, len(intervals) // 3)
+    found["first third"] = jackknife(time, intervals[:third], 1, 10)
+    found["last third"] = jackknife(time, intervals[-third:], 1, 10)
+    slower = MISTAKEN_TEMPERATURE ** 0.5  # times scale as 1 / sqrt(T): what takes t there takes t sqrt(0.73) here
+    found["T = 0.73"] = jackknife(time, intervals, slower, 10 * slower)
+    return found
+
+
+def main(folder):
+    points = {}
+    for path in sorted(Path(folder).glob("runs/*/summary.json")):
+        run = sandglass.load(path.parent)
+        config, summary = run.config, run.summary
+        if config["system"]["packing_fraction"] != 0.81:
+            continue
+        drive = config["drive"]
+        key = (config["system"]["particles"], config["collision"]["restitution"], drive["partner"],
+               drive["reach"] if drive["partner"] == "within" else "", drive["frequency"],
+               config["prepare"]["jammed_fraction"])
+        waited = summary["time"] / config["run"]["collisions"] * config["run"]["equilibrate"]
+        points.setdefault(key, []).append((exponents(run), waited, summary["collision_rate"]))
+    out = csv.writer(sys.stdout)
+    names = list(next(iter(points.values()))[0][0])
+    out.writerow(COLUMNS + [column for name in names for column in (name, "error")])
+    for key, runs in sorted(points.items(), key=str):
+        row = [*key, len(runs), f"{np.mean([w for _, w, _ in runs]):.0f}", f"{np.mean([r for *_, r in runs]):.1f}"]
+        for name in names:
+            row += [f"{number:.4f}" for number in merged([found[name] for found, *_ in runs])]
+        out.writerow(row)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
