@@ -52,7 +52,7 @@ def exponents(run):
     found = {f"{a:g}-{b:g}": jackknife(time, intervals, a, b) for a, b in RANGES}
     cage = run["dynamics/small/cage_relative_displacement"]
     for a, b in RANGES[1:2]:
-        found[f"cage {a:g}-{b:g}"] = exponent(cage["time"], cage["value"], a, b), np.nan
+        found[f"cage {a:g}-{b:g}"] = jackknife(cage["time"], cage["interval_value"], a, b)
     third = max(1, len(intervals) // 3)
     found["first third"] = jackknife(time, intervals[:third], 1, 10)
     found["last third"] = jackknife(time, intervals[-third:], 1, 10)

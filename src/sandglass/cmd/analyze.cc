@@ -32,6 +32,10 @@ void add_options(CLI::App& app, AnalysisOptions& options) {
   app.add_option("--selection-time", options.selection_time,
                  "at which fast and slow disks are told apart (default: a block)")
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--exponent-range", options.exponent_range,
+                 "times between which the exponent of the MSD is fitted (default: 1,10)")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
   app.add_option("--bin-width", options.bin_width, "of g(r), in R_s (default: L / 800)")
       ->check(CLI::Range(0.001, 1000.0));
 }
@@ -53,6 +57,8 @@ int analyze_command(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
   }
+  if (!(options.exponent_range[0] < options.exponent_range[1]))
+    throw InputError("--exponent-range needs two times, the earlier one first, as in 1,10");
   if (folder.empty()) folder = trajectory.parent_path() / "analysis";
   std::error_code error;
   if (std::filesystem::exists(folder / "config.toml", error))

@@ -51,10 +51,11 @@ struct Config {
   struct Observe {
     std::vector<double> wavenumbers{0.5, 3.0};  ///< in 1 / R_s
     double lags_per_decade = 12;
-    double overlap_length = 0.6;             ///< in R_s
-    double selection_time = 0;               ///< 0: the length of an interval
-    std::optional<double> structure_frames;  ///< none: "auto", as many as cost little
-    double bin_width = 0;                    ///< of g(r), in R_s; 0: L / 800, at most 0.4
+    double overlap_length = 0.6;                 ///< in R_s
+    double selection_time = 0;                   ///< 0: the length of an interval
+    double exponent_from = 1, exponent_to = 10;  ///< times between which the exponent of the MSD is fitted
+    std::optional<double> structure_frames;      ///< none: "auto", as many as cost little
+    double bin_width = 0;                        ///< of g(r), in R_s; 0: L / 800, at most 0.4
   } observe;
   struct Output {
     std::uint64_t trajectory_frames = 11;

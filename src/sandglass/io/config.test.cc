@@ -63,6 +63,8 @@ Config any_config(const std::string& file) {
   c.observe.wavenumbers.clear();
   for (auto n = *rc::gen::inRange(1, 32); n > 0; --n) c.observe.wavenumbers.push_back(real(1e-3, 100));
   c.observe.lags_per_decade = real(1, 100);
+  c.observe.exponent_from = real(1e-3, 5);
+  c.observe.exponent_to = real(6, 1e6);
   c.output.trajectory_frames = *rc::gen::inRange<std::uint64_t>(2, 1000000);
   c.output.checkpoint_seconds = real(1, 1e6);
   return c;

@@ -147,6 +147,12 @@ void check_config(const Config& config) {
         "L / 800",
         config.observe.bin_width));
   }
+  if (!(config.observe.exponent_from < config.observe.exponent_to)) {
+    throw InputError(fmt::format(
+        "observe.exponent_from = {} is not before observe.exponent_to = {}: the exponent of the MSD needs a range of "
+        "times, such as 1 to 10",
+        config.observe.exponent_from, config.observe.exponent_to));
+  }
   if (const double frames = config.observe.structure_frames.value_or(0); frames != std::floor(frames)) {
     throw InputError(fmt::format("observe.structure_frames = {} must be a whole number or \"auto\"", frames));
   }

@@ -298,6 +298,17 @@ const std::vector<Key>& config_table() {
            .description = "Time over which the fastest and the slowest tenth of the disks are told apart, at most the "
                           "length of an interval; 0: that length.",
            .range = {0, 1e12}}),
+      key<&C::observe, &C::Observe::exponent_from>(
+          {.name = "observe.exponent_from",
+           .unit = "time",
+           .description = "Start of the range of lags over which the exponent of the MSD is fitted.",
+           .range = {0, 1e12, true},
+           .physics = false}),
+      key<&C::observe, &C::Observe::exponent_to>({.name = "observe.exponent_to",
+                                                  .unit = "time",
+                                                  .description = "End of that range; the paper's is 1 to 10.",
+                                                  .range = {0, 1e12, true},
+                                                  .physics = false}),
       key<&C::observe, &C::Observe::structure_frames>(
           {.name = "observe.structure_frames",
            .description = "Frames, evenly spaced, of which g(r), S(k), bond order and velocity structure are taken; "

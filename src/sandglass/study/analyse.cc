@@ -140,7 +140,7 @@ Summary analyse(const std::filesystem::path& trajectory, const std::filesystem::
   summary.box_length = disks.box_length;
   if (timing.frames > 1) {
     summary.time = plan.end() - plan.start;
-    summarise_frames(correlator, structure, summary);
+    summarise_frames(correlator, structure, options.exponent_range, summary);
     if (reader.counts_collisions()) {
       summary.collisions_per_particle = last_collisions - first_collisions;
       summary.collision_rate = correlator.collision_rate();

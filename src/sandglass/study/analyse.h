@@ -1,6 +1,7 @@
 // The measurements of a run, made on stored frames instead.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct AnalysisOptions {
   std::uint64_t blocks = 0;  ///< intervals whose scatter gives the errors; 0: ten, two where frames are few
   std::vector<double> wavenumbers{0.5, 3.0};
   double lags_per_decade = 12, overlap_length = 0.6, selection_time = 0, bin_width = 0;
+  std::array<double, 2> exponent_range{1, 10};  ///< times between which the exponent of the MSD is fitted
 };
 
 /// Reads `trajectory` twice (frames and times first) and writes observables.h5 and summary.json into `folder`. Static

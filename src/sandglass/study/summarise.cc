@@ -12,13 +12,12 @@
 namespace sandglass {
 namespace {
 
-constexpr double exponent_from = 1, exponent_to = 10;  // the range of the paper's fits
-
-void describe_motion(const Correlator& correlator, Summary& summary) {
+void describe_motion(const Correlator& correlator, std::array<double, 2> exponent_range, Summary& summary) {
+  const auto [from, to] = exponent_range;
   const auto fill = [&](Group group, Summary::Exponent& exponent, double& unit_time, const std::string& name) {
     const IntervalSeries series = correlator.mean_square_displacement(group);
-    const Estimate fit = power_law_exponent(series, exponent_from, exponent_to);
-    exponent = {fit.value, fit.error, exponent_from, exponent_to};
+    const Estimate fit = power_law_exponent(series, from, to);
+    exponent = {fit.value, fit.error, from, to};
     const Estimate passage = passage_time(series, 1);
     unit_time = passage.value;
     summary.errors.emplace_back("msd_unit_time_" + name, passage.error);
@@ -165,8 +164,9 @@ std::string fewer_threads(const Config& config, unsigned used) {
   return fmt::format("{}: at this size and density more would not pay.", asked);
 }
 
-void summarise_frames(const Correlator& correlator, const StructureSampler& structure, Summary& summary) {
-  describe_motion(correlator, summary);
+void summarise_frames(const Correlator& correlator, const StructureSampler& structure,
+                      std::array<double, 2> exponent_range, Summary& summary) {
+  describe_motion(correlator, exponent_range, summary);
   describe_relaxation(correlator, summary);
   describe_structure(structure, summary);
 }
@@ -211,7 +211,8 @@ Summary summarise(const Config& config, const State& end, const Measurement& mea
   summary.state_hash = state_hash(end);
 
   if (facts.threads < config.run.threads) summary.decisions.push_back(fewer_threads(config, facts.threads));
-  summarise_frames(measurement.correlator(), measurement.structure(), summary);
+  summarise_frames(measurement.correlator(), measurement.structure(),
+                   {config.observe.exponent_from, config.observe.exponent_to}, summary);
   describe_partners(averages, summary);
   describe_energy(end, averages, facts, summary);
   describe_drive(config, end, facts, summary);

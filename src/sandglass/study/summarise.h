@@ -1,6 +1,8 @@
 // A finished run in numbers and sentences.
 #pragma once
 
+#include <array>
+
 #include "sandglass/core/state.h"
 #include "sandglass/io/config.h"
 #include "sandglass/io/summary.h"
@@ -24,7 +26,9 @@ std::string fewer_threads(const Config& config, unsigned used);
 /// The summary, with what the program decided by itself and what the reader must be warned of.
 Summary summarise(const Config& config, const State& end, const Measurement& measurement, const RunFacts& facts);
 
-/// The part of a summary that frames alone allow: motion, relaxation, structure.
-void summarise_frames(const Correlator& correlator, const StructureSampler& structure, Summary& summary);
+/// The part of a summary that frames alone allow: motion, with the exponent of the MSD between two times, relaxation,
+/// structure.
+void summarise_frames(const Correlator& correlator, const StructureSampler& structure,
+                      std::array<double, 2> exponent_range, Summary& summary);
 
 }  // namespace sandglass
