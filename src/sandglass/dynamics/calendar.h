@@ -17,7 +17,8 @@ inline namespace SANDGLASS_ISA {
 /// Time is cut into windows of some hundred events. An entry of a later window is only appended to that window's chain
 /// of chunks; when a window opens, its entries are sorted, and are then taken one after the other. What is entered into
 /// the window while it is open, a small part, is kept unsorted beside them (late). Nothing is moved or removed when a
-/// prediction changes: an entry counts only while it still states its disk's next_time.
+/// prediction changes: an entry counts only while it still states its disk's next_time. What does not count when its
+/// window opens is left out.
 /// Nearly all branches here go the same way nearly always; those of a heap, or of a bucket of a few events, do not, and
 /// that costs more than the work.
 class Calendar {
@@ -44,6 +45,19 @@ class Calendar {
     else
       append(ahead <= ring_mask_ ? static_cast<std::size_t>(window & ring_mask_) : beyond(), time, slot);
   }
+
+  /// Enters again what has been entered before, if its window is open and it may have been left out, since it did not
+  /// count when that was opened.
+  [[gnu::always_inline]] void push_again(double time, std::uint32_t slot) {
+    if (window_of(time) <= window_) enter_late(time, slot);
+  }
+
+  /// An entry of the open window, the n-th from the next on (n < 32), of those there when it opened.
+  struct Coming {
+    double time;
+    std::uint32_t slot;
+  };
+  [[nodiscard]] Coming coming(std::size_t n) const { return {sorted_[head_ + n].time, sorted_[head_ + n].slot}; }
 
   /// Goes on from time t, after everything before it has been taken out and while nothing later is in.
   void skip_to(double t) {
@@ -244,10 +258,7 @@ class Calendar {
   [[gnu::noinline]] void open_next_window(const Record* records) {
     ++window_;
     const auto place = static_cast<std::size_t>(window_ & ring_mask_);
-    if (place == 0)
-      empty_chain(beyond(), [&](double time, std::uint32_t slot) {
-        if (states(records[slot], time)) push(time, slot);
-      });
+    if (place == 0) empty_chain(beyond(), [&](double time, std::uint32_t slot) { push(time, slot); });
     std::size_t room = 0;
     for (std::uint32_t chunk = chunk_of(chains_[place]); chunk != none; chunk = chunks_[chunk].next)
       room += Chunk::capacity;
