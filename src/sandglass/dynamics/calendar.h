@@ -78,8 +78,8 @@ class Calendar {
   }
 
   /// Takes out and returns the slot whose event is the earliest and not after `limit`; no_disk if there is none.
-  /// `before(a, b)` orders two slots whose events are at the same time; where the tables do not fit into the cache,
-  /// `ahead(slot)` and `soon(slot)` are told whose events come some twenty and ten events later.
+  /// `before(a, b)` orders two slots whose events are at the same time. `ahead(slot)` is told whose events come a few
+  /// events later; where the tables do not fit into the cache, `ahead` some twenty and `soon(slot)` some ten before.
   template <class Before, class Ahead, class Soon>
   [[gnu::always_inline]] std::uint32_t pop(const Record* records, double limit, Before&& before, Ahead&& ahead,
                                            Soon&& soon) {
@@ -104,6 +104,9 @@ class Calendar {
         ahead(sorted_[head_ + 20].slot);
         soon(sorted_[head_ + 10].slot);
         fetch_next_window(records);
+      } else {  // from one level of the cache to the next
+        prefetch(&records[sorted_[head_ + 8].slot]);
+        ahead(sorted_[head_ + 4].slot);
       }
       if (states(records[next.slot], next.time)) [[likely]]
         return next.slot;
@@ -310,7 +313,7 @@ class Calendar {
   }
 
   double start_ = 0, inverse_width_ = 1;  // of a window
-  bool out_of_cache_ = false;             // whether fetching ahead pays
+  bool out_of_cache_ = false;             // whether fetching far ahead pays
   std::int64_t window_ = 0;               // the open one, counted from start_
   std::int64_t ring_mask_ = 0;            // number of windows in the ring, less 1
   Array<Entry> sorted_, unsorted_;        // what was known of the open window when it opened
