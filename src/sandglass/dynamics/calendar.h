@@ -17,7 +17,8 @@ inline namespace SANDGLASS_ISA {
 /// Time is cut into windows of some hundred events. An entry of a later window is only appended to that window's chain
 /// of chunks; when a window opens, its entries are sorted, and are then taken one after the other. What is entered into
 /// the window while it is open, a small part, is kept unsorted beside them (late). Nothing is moved or removed when a
-/// prediction changes: an entry counts only while it still states its disk's next_time.
+/// prediction changes: an entry counts only while it still states its disk's next_time. What does not count when its
+/// window opens is left out.
 /// Nearly all branches here go the same way nearly always; those of a heap, or of a bucket of a few events, do not, and
 /// that costs more than the work.
 class Calendar {
@@ -45,6 +46,19 @@ class Calendar {
       append(ahead <= ring_mask_ ? static_cast<std::size_t>(window & ring_mask_) : beyond(), time, slot);
   }
 
+  /// Enters again what has been entered before, if its window is open and it may have been left out, since it did not
+  /// count when that was opened.
+  [[gnu::always_inline]] void push_again(double time, std::uint32_t slot) {
+    if (window_of(time) <= window_) enter_late(time, slot);
+  }
+
+  /// An entry of the open window, the n-th from the next on (n < 32), of those there when it opened.
+  struct Coming {
+    double time;
+    std::uint32_t slot;
+  };
+  [[nodiscard]] Coming coming(std::size_t n) const { return {sorted_[head_ + n].time, sorted_[head_ + n].slot}; }
+
   /// Goes on from time t, after everything before it has been taken out and while nothing later is in.
   void skip_to(double t) {
     if (window_of(t) > window_) window_ = window_of(t);
@@ -64,8 +78,8 @@ class Calendar {
   }
 
   /// Takes out and returns the slot whose event is the earliest and not after `limit`; no_disk if there is none.
-  /// `before(a, b)` orders two slots whose events are at the same time; where the tables do not fit into the cache,
-  /// `ahead(slot)` and `soon(slot)` are told whose events come some twenty and ten events later.
+  /// `before(a, b)` orders two slots whose events are at the same time. `ahead(slot)` is told whose events come a few
+  /// events later; where the tables do not fit into the cache, `ahead` some twenty and `soon(slot)` some ten before.
   template <class Before, class Ahead, class Soon>
   [[gnu::always_inline]] std::uint32_t pop(const Record* records, double limit, Before&& before, Ahead&& ahead,
                                            Soon&& soon) {
@@ -90,6 +104,9 @@ class Calendar {
         ahead(sorted_[head_ + 20].slot);
         soon(sorted_[head_ + 10].slot);
         fetch_next_window(records);
+      } else {  // from one level of the cache to the next
+        prefetch(&records[sorted_[head_ + 8].slot]);
+        ahead(sorted_[head_ + 4].slot);
       }
       if (states(records[next.slot], next.time)) [[likely]]
         return next.slot;
@@ -244,10 +261,7 @@ class Calendar {
   [[gnu::noinline]] void open_next_window(const Record* records) {
     ++window_;
     const auto place = static_cast<std::size_t>(window_ & ring_mask_);
-    if (place == 0)
-      empty_chain(beyond(), [&](double time, std::uint32_t slot) {
-        if (states(records[slot], time)) push(time, slot);
-      });
+    if (place == 0) empty_chain(beyond(), [&](double time, std::uint32_t slot) { push(time, slot); });
     std::size_t room = 0;
     for (std::uint32_t chunk = chunk_of(chains_[place]); chunk != none; chunk = chunks_[chunk].next)
       room += Chunk::capacity;
@@ -299,7 +313,7 @@ class Calendar {
   }
 
   double start_ = 0, inverse_width_ = 1;  // of a window
-  bool out_of_cache_ = false;             // whether fetching ahead pays
+  bool out_of_cache_ = false;             // whether fetching far ahead pays
   std::int64_t window_ = 0;               // the open one, counted from start_
   std::int64_t ring_mask_ = 0;            // number of windows in the ring, less 1
   Array<Entry> sorted_, unsorted_;        // what was known of the open window when it opened

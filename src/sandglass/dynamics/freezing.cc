@@ -154,6 +154,7 @@ void Strip::resume(const Strip& other) {
     } else if (is_frozen(records_[disk.slot])) {
       set_next(records_[disk.slot], never, Next::review, no_disk);
       concern(disk.slot);
+      enter_next_kick(disk.slot);
       ++resumed_;
     }
   }
@@ -181,15 +182,13 @@ void Strip::end_pass() {
 void Strip::remake_calendar() {
   calendar_.clear();
   neighbours_.refresh();
-  neighbours_.grid().visit_rows(core_.first, core_.count, [this](std::uint32_t i) {
-    const Record& disk = records_[i];
-    if (disk.next_time < never && disk.next != Next::contact_entered_by_partner) enter_calendar(i);
-  });
+  neighbours_.grid().visit_rows(core_.first, core_.count, [this](std::uint32_t i) { enter_calendar(i); });
 }
 
 void Strip::take_over(const Strip& other) {
   for (const Entry& entry : other.outbox_)
-    if (owns(entry.slot) && records_[entry.slot].next_time == entry.time) calendar_.push(entry.time, entry.slot);
+    if (owns(entry.slot) && (records_[entry.slot].next_time == entry.time || cold_[entry.slot].next_kick == entry.time))
+      calendar_.push(entry.time, entry.slot);
 }
 
 }  // namespace SANDGLASS_ISA

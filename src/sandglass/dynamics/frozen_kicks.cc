@@ -40,8 +40,8 @@ void Strip::run_window() {
     std::pop_heap(frozen_kicks_.begin(), frozen_kicks_.end());
     frozen_kicks_.pop_back();
     on_frozen_kick(kick);
-    const Kick random = Kick::draw(tables_->state.seed, cold_[kick.slot].id, kick.count);
-    const double next = kick.time + random.wait / clock_rate(tables_->state.drive);
+    const double wait = Kick::draw_wait(tables_->state.seed, cold_[kick.slot].id, kick.count);
+    const double next = kick.time + wait / clock_rate(tables_->state.drive);
     if (next > end) continue;
     frozen_kicks_.push_back({next, kick.count + 1, kick.slot});
     std::push_heap(frozen_kicks_.begin(), frozen_kicks_.end());

@@ -14,10 +14,8 @@ Smallest Strip::smallest_gap(const Record& disk, const std::uint32_t* list, doub
   const Vector x = Vector::all(std::fma(disk.vx, flight, disk.x)), y = Vector::all(std::fma(disk.vy, flight, disk.y));
   const Vector length = Vector::all(box_.length), inverse = Vector::all(box_.inverse);
   auto nearest = [&](Vector difference) { return fnma(length, nearest_integer(difference * inverse), difference); };
-  const Record* rows[Vector::width];
-  for (std::uint32_t n = 0; n < Vector::width; ++n) rows[n] = &records_[list[n]];
   Vector other[8];  // columns of the record: x, y, vx, vy, time, next_time, radius
-  load_columns(rows, other);
+  load_columns(records_, list, other);
   const Vector other_flight = Vector::all(t) - other[4];
   const Vector rx = nearest(fma(other[2], other_flight, other[0]) - x);
   const Vector ry = nearest(fma(other[3], other_flight, other[1]) - y);

@@ -26,6 +26,13 @@ void Strip::settle(std::uint32_t i, Lanes begun) {
     calendar_.push(t, i);
 }
 
+/// Enters what comes next for disk i, and its next kick, into an empty calendar.
+void Strip::enter_calendar(std::uint32_t i) {
+  const Record& disk = records_[i];
+  if (disk.next_time < never && disk.next != Next::contact_entered_by_partner) calendar_.push(disk.next_time, i);
+  if (cold_[i].next_kick < never && cold_[i].next_kick != disk.next_time) calendar_.push(cold_[i].next_kick, i);
+}
+
 /// Disk i has lost the partner of its contact. It looks for another when the contact would have come: whoever meets it
 /// before will have found it.
 void Strip::part(std::uint32_t i) {
@@ -60,18 +67,18 @@ Strip::Foreseen Strip::earliest_contact_by_rule(std::uint32_t i) const {
 
 #ifdef SANDGLASS_SIMD
 
-/// One block of the list: contact_time, lane by lane, the same operations in the same order.
+/// One block of the list: contact_time, lane by lane, the same operations in the same order. `amend` may change the
+/// columns of the listed records (x, y, vx, vy, time, next_time, radius), and says which lanes count.
+template <class Amend>
 [[gnu::always_inline]] inline Strip::Lanes Strip::contacts_of_block(const Flight& disk, double disk_radius,
-                                                                    const std::uint32_t* list,
-                                                                    std::uint32_t except) const {
+                                                                    const std::uint32_t* list, Amend&& amend) const {
   const Vector x = Vector::all(disk.x), y = Vector::all(disk.y), vx = Vector::all(disk.vx), vy = Vector::all(disk.vy);
   const Vector time = Vector::all(disk.time), radius = Vector::all(disk_radius);
   const Vector length = Vector::all(box_.length), inverse = Vector::all(box_.inverse), zero = Vector::all(0);
   auto nearest = [&](Vector difference) { return fnma(length, nearest_integer(difference * inverse), difference); };
-  const Record* rows[Vector::width];
-  for (std::uint32_t n = 0; n < Vector::width; ++n) rows[n] = &records_[list[n]];
-  Vector other[8];  // columns of the record: x, y, vx, vy, time, next_time, radius
-  load_columns(rows, other);
+  Vector other[8];
+  load_columns(records_, list, other);
+  const Mask counts = amend(other);
   const Vector t = max(time, other[4]);
   const Vector flight = t - time, other_flight = t - other[4];
   const Vector rx = nearest(fma(other[2], other_flight, other[0]) - fma(vx, flight, x));
@@ -83,14 +90,27 @@ Strip::Foreseen Strip::earliest_contact_by_rule(std::uint32_t i) const {
   const Mask touching = c <= zero;
   const Vector wait = choose(touching, zero, c / (sqrt(discriminant) - ru));
   const Vector when = t + wait;
-  const Mask meets = other_than(list, except) & (ru < zero) & (touching | (zero <= discriminant)) & (when <= other[5]);
+  const Mask meets = counts & (ru < zero) & (touching | (zero <= discriminant)) & (when <= other[5]);
   const Vector candidate = choose(meets, when, Vector::all(never));
   const double soonest = smallest(candidate);
   return {soonest, (candidate == Vector::all(soonest)).lanes(), (candidate < other[5]).lanes()};
 }
 
 Strip::Lanes Strip::first_contacts(std::uint32_t i, const Flight& flight, std::uint32_t except) const {
-  return contacts_of_block(flight, records_[i].radius, neighbours_.list(i), except);
+  const std::uint32_t* const list = neighbours_.list(i);
+  return contacts_of_block(flight, records_[i].radius, list, [&](Vector(&)[8]) { return other_than(list, except); });
+}
+
+/// The same where disk `other` has a new flight, too, which is not yet in its record.
+Strip::Lanes Strip::first_contacts(std::uint32_t i, const Flight& flight, std::uint32_t other,
+                                   const Flight& other_flight) const {
+  const std::uint32_t* const list = neighbours_.list(i);
+  return contacts_of_block(flight, records_[i].radius, list, [&](Vector(&columns)[8]) {
+    const double now[6] = {other_flight.x, other_flight.y, other_flight.vx, other_flight.vy, other_flight.time, never};
+    const Mask others = other_than(list, other);
+    for (int c = 0; c < 6; ++c) columns[c] = choose(others, columns[c], Vector::all(now[c]));
+    return everywhere();
+  });
 }
 
 /// The earliest of all blocks, the first of which is done.
@@ -110,13 +130,14 @@ Strip::Foreseen Strip::earliest_of_blocks(std::uint32_t i, Lanes lanes) const {
     first += Vector::width;
     if (first >= disk.neighbour_count) return earliest;
     list += Vector::width;
-    lanes = contacts_of_block(Flight(disk), disk.radius, list, no_disk);
+    lanes = contacts_of_block(Flight(disk), disk.radius, list, [](Vector(&)[8]) { return everywhere(); });
   }
 }
 
 #else
 
 Strip::Lanes Strip::first_contacts(std::uint32_t, const Flight&, std::uint32_t) const { return {}; }
+Strip::Lanes Strip::first_contacts(std::uint32_t, const Flight&, std::uint32_t, const Flight&) const { return {}; }
 Strip::Foreseen Strip::earliest_of_blocks(std::uint32_t i, Lanes) const { return earliest_contact_by_rule(i); }
 
 #endif
@@ -154,6 +175,7 @@ void Strip::schedule(std::uint32_t i, Foreseen contact) {
     set_next(other, t, Next::contact_entered_by_partner, i);
   }
   set_next(disk, t, next, next == Next::contact ? contact.partner : no_disk);
+  if (next == Next::kick) return enter_kick_again(i);
   enter_event(t, i);
 }
 

@@ -59,17 +59,19 @@ inline Mask other_than(const std::uint32_t* entries, std::uint32_t value) {
   return {_mm256_cmpneq_epi32_mask(all, _mm256_set1_epi32(static_cast<int>(value)))};
 }
 
+inline Mask everywhere() { return {0xff}; }
+
 inline Smallest smallest_of_8(const double* x) {
   const Vector v = {_mm512_load_pd(x)};
   const double value = smallest(v);
   return {value, (v == Vector::all(value)).lanes()};
 }
 
-/// Transposes eight rows of eight doubles: out[c] holds column c, lane r from rows[r].
+/// Transposes eight rows of eight doubles: out[c] holds column c, lane r from rows[list[r]].
 template <class Row>
-inline void load_columns(const Row* const (&rows)[8], Vector (&out)[8]) {
+inline void load_columns(const Row* rows, const std::uint32_t* list, Vector (&out)[8]) {
   __m512d r[8], t[8];
-  for (int i = 0; i < 8; ++i) r[i] = _mm512_load_pd(reinterpret_cast<const double*>(rows[i]));
+  for (int i = 0; i < 8; ++i) r[i] = _mm512_load_pd(reinterpret_cast<const double*>(rows + list[i]));
   for (int i = 0; i < 8; i += 2) {
     t[i] = _mm512_unpacklo_pd(r[i], r[i + 1]);
     t[i + 1] = _mm512_unpackhi_pd(r[i], r[i + 1]);
@@ -123,6 +125,7 @@ inline Mask other_than(const std::uint32_t* entries, std::uint32_t value) {
   const __m256i wide = _mm256_cvtepi32_epi64(_mm_xor_si128(equal, _mm_set1_epi32(-1)));
   return {_mm256_castsi256_pd(wide)};
 }
+inline Mask everywhere() { return {_mm256_castsi256_pd(_mm256_set1_epi32(-1))}; }
 inline double smallest(Vector a) {
   const __m128d half = _mm_min_pd(_mm256_castpd256_pd128(a.v), _mm256_extractf128_pd(a.v, 1));
   return _mm_cvtsd_f64(_mm_min_sd(half, _mm_unpackhi_pd(half, half)));
@@ -134,12 +137,12 @@ inline Smallest smallest_of_8(const double* x) {
   return {value, (low == Vector::all(value)).lanes() | (high == Vector::all(value)).lanes() << 4};
 }
 
-/// Transposes four rows of eight doubles: out[c] holds column c, lane r from rows[r].
+/// Transposes four rows of eight doubles: out[c] holds column c, lane r from rows[list[r]].
 template <class Row>
-inline void load_columns(const Row* const (&rows)[4], Vector (&out)[8]) {
+inline void load_columns(const Row* rows, const std::uint32_t* list, Vector (&out)[8]) {
   for (int half = 0; half < 8; half += 4) {
     __m256d r[4];
-    for (int i = 0; i < 4; ++i) r[i] = _mm256_load_pd(reinterpret_cast<const double*>(rows[i]) + half);
+    for (int i = 0; i < 4; ++i) r[i] = _mm256_load_pd(reinterpret_cast<const double*>(rows + list[i]) + half);
     const __m256d a = _mm256_unpacklo_pd(r[0], r[1]), b = _mm256_unpackhi_pd(r[0], r[1]);
     const __m256d c = _mm256_unpacklo_pd(r[2], r[3]), d = _mm256_unpackhi_pd(r[2], r[3]);
     out[half].v = _mm256_permute2f128_pd(a, c, 0x20);

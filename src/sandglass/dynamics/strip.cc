@@ -166,7 +166,7 @@ void Strip::on_contact(std::uint32_t i, std::uint32_t j, double t) {
 
 void Strip::on_kick(std::uint32_t i, double t) {
   ColdRecord& cold = cold_[i];
-  const Kick kick = Kick::draw(tables_->state.seed, cold.id, cold.kick_count + 1);
+  const Kick kick = next_kick(i, t);
   const Drive& drive = tables_->state.drive;
   const bool pair = drive.kind == DriveKind::pair;
   std::uint32_t j = no_disk;
@@ -178,37 +178,95 @@ void Strip::on_kick(std::uint32_t i, double t) {
   }
   ++cold.kick_count;
   cold.next_kick = t + kick.wait / clock_rate(drive);
-  if (pair) {
-    if (j == no_disk) {
-      ++tally_.kicks_without_partner;
-      if (log) log_event(EventKind::kick, t, i, j);
-      set_next(records_[i], never, Next::review, no_disk);
-      predict(i);
-      return;
-    }
+  enter_next_kick(i);
+  if (log) [[unlikely]]
+    log_event(EventKind::kick, t, i, j);
+  if (pair && j == no_disk) {
+    ++tally_.kicks_without_partner;
+    set_next(records_[i], never, Next::review, no_disk);
+    return predict(i);
   }
   ++tally_.kicks;
   const double px = drive.amplitude * kick.px, py = drive.amplitude * kick.py;
-  double gained = push(i, t, px, py);
-  if (pair) gained += push(j, t, -px, -py);
-  tally_.injected.add(gained);
-  if (log) [[unlikely]]
-    log_event(EventKind::kick, t, i, j);
-  if (!pair) return predict(i);
-  const Lanes of_i = first_contacts(i, Flight(records_[i]), no_disk),
-              of_j = first_contacts(j, Flight(records_[j]), no_disk);
-  settle(i, of_i);
-  settle(j, of_j);
+  tally_.injected.add(pair ? kick_pair(i, j, t, px, py) : kick_alone(i, t, px, py));
 }
 
-/// Gives momentum to disk i at time t; returns the energy gained. What was next for it is void.
-double Strip::push(std::uint32_t i, double t, double px, double py) {
-  if (records_[i].partner != no_disk) part(records_[i].partner);
+/// The next kick of disk i, which comes at time t. Most often it has been drawn already.
+Kick Strip::next_kick(std::uint32_t i, double t) {
+  const std::uint64_t count = cold_[i].kick_count + 1;
+  if (t > drawn_until_) draw_kicks(i, t);
+  const unsigned lanes = equal_lanes(drawn_kicks_.slot, i);
+  const auto n = static_cast<unsigned>(__builtin_ctz(lanes | 1u << 31)) % DrawnKicks::size;
+  if (lanes != 0 && drawn_kicks_.count[n] == count) [[likely]]
+    return drawn_kicks_.kick(n);
+  return Kick::draw(tables_->state.seed, cold_[i].id, count);
+}
+
+/// Draws the kick of disk i, which comes at time t, and those that the calendar has next. These come as a surprise to
+/// the processor: what the search for their partners reads is brought nearer meanwhile.
+void Strip::draw_kicks(std::uint32_t i, double t) {
+  DrawnKicks& drawn = drawn_kicks_;
+  std::uint32_t size = 0;
+  auto add = [&](std::uint32_t slot, double time) {
+    drawn.slot[size] = slot, drawn.id[size] = cold_[slot].id, drawn.count[size] = cold_[slot].kick_count + 1;
+    ++size;
+    drawn_until_ = time;
+    prefetch(neighbours_.list(slot));
+  };
+  add(i, t);
+  for (std::size_t n = 0; n < 32 && size < DrawnKicks::size; ++n) {
+    const Calendar::Coming entry = calendar_.coming(n);
+    if (entry.time < never && entry.time == cold_[entry.slot].next_kick && entry.slot != i) add(entry.slot, entry.time);
+  }
+  drawn.draw(tables_->state.seed);
+  for (std::uint32_t n = 0; n < size; ++n)
+    for (std::uint32_t m = 0; m < Neighbours::block; ++m) prefetch(&records_[neighbours_.list(drawn.slot[n])[m]]);
+}
+
+/// The clock of disk i has been set: its kick has an entry from now on, whatever else comes before. In a later pass it
+/// needs one for the strip where the disk stands, if it comes after the window.
+void Strip::enter_next_kick(std::uint32_t i) {
+  const double t = cold_[i].next_kick;
+  if (t < never && (first_pass_ || t > outbox_from_)) enter_event(t, i);
+}
+
+/// The kick of disk i comes next.
+void Strip::enter_kick_again(std::uint32_t i) {
+  const double t = cold_[i].next_kick;
+  if (first_pass_)
+    calendar_.push_again(t, i);
+  else if (t <= outbox_from_)
+    enter_event(t, i);
+}
+
+/// Gives momentum to disk i at time t; returns the energy gained.
+double Strip::kick_alone(std::uint32_t i, double t, double px, double py) {
   Flight flight(records_[i]);
   advance(flight, cold_[i].image_x, cold_[i].image_y, t, box_);
   const double gained = give_momentum(flight, px, py, inverse_mass(records_[i]));
   set_flight(records_[i], flight);
   ++tally_.kicked[records_[i].species];
+  predict(i);
+  return gained;
+}
+
+/// Gives momentum to disk i, and the opposite to disk j; returns the energy gained. As in on_contact, the searches
+/// begin before the new flights are written.
+double Strip::kick_pair(std::uint32_t i, std::uint32_t j, double t, double px, double py) {
+  Record &disk_i = records_[i], &disk_j = records_[j];
+  Flight a(disk_i), b(disk_j);
+  advance(a, cold_[i].image_x, cold_[i].image_y, t, box_);
+  advance(b, cold_[j].image_x, cold_[j].image_y, t, box_);
+  const double gained =
+      give_momentum(a, px, py, inverse_mass(disk_i)) + give_momentum(b, -px, -py, inverse_mass(disk_j));
+  const Lanes of_i = first_contacts(i, a, j, b), of_j = first_contacts(j, b, i, a);
+  if (disk_j.partner != no_disk) part(disk_j.partner);  // i has none, or its kick would not have come next
+  set_flight(disk_i, a);
+  set_flight(disk_j, b);
+  ++tally_.kicked[disk_i.species];
+  ++tally_.kicked[disk_j.species];
+  settle(i, of_i);
+  settle(j, of_j);
   return gained;
 }
 

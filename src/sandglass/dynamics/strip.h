@@ -43,6 +43,7 @@ class alignas(128) Strip {
   void enter_list(std::uint32_t slot) { neighbours_.enter(slot, cold_[slot].centre, records_); }
   [[nodiscard]] Neighbours& neighbours() { return neighbours_; }
   void set_calendar(Calendar calendar) { calendar_ = std::move(calendar); }
+  void enter_calendar(std::uint32_t i);
   void predict(std::uint32_t i);
 
   /// Does every event at or before `end`.
@@ -68,7 +69,6 @@ class alignas(128) Strip {
   void remake_calendar();
   [[nodiscard]] bool failed() const { return failed_; }
   [[nodiscard]] bool too_fast() const { return too_fast_; }
-  void enter_calendar(std::uint32_t i) { calendar_.push(records_[i].next_time, i); }
 
   /// Adds what was counted to `tally` and `bookkeeping`, and begins anew.
   void hand_in(Tally& tally, Simulation::Bookkeeping& bookkeeping);
@@ -112,7 +112,12 @@ class alignas(128) Strip {
   void on_review(std::uint32_t i, double t);
   [[nodiscard]] Collision collision(std::uint32_t i, std::uint32_t j, double t) const;
   void carry_out(const Collision& result);
-  double push(std::uint32_t i, double t, double px, double py);
+  [[nodiscard]] Kick next_kick(std::uint32_t i, double t);
+  void draw_kicks(std::uint32_t i, double t);
+  void enter_next_kick(std::uint32_t i);
+  void enter_kick_again(std::uint32_t i);
+  double kick_alone(std::uint32_t i, double t, double px, double py);
+  double kick_pair(std::uint32_t i, std::uint32_t j, double t, double px, double py);
   bool remake_list(std::uint32_t i, double t);
   void check_progress(double t);
   void fetch_disk(std::uint32_t i) const;
@@ -124,9 +129,12 @@ class alignas(128) Strip {
   void part(std::uint32_t i);
   [[nodiscard]] Foreseen earliest_contact(std::uint32_t i) const;
   [[nodiscard]] Foreseen earliest_contact_by_rule(std::uint32_t i) const;
+  template <class Amend>
   [[nodiscard]] Lanes contacts_of_block(const Flight& disk, double disk_radius, const std::uint32_t* list,
-                                        std::uint32_t except) const;
+                                        Amend&& amend) const;
   [[nodiscard]] Lanes first_contacts(std::uint32_t i, const Flight& flight, std::uint32_t except) const;
+  [[nodiscard]] Lanes first_contacts(std::uint32_t i, const Flight& flight, std::uint32_t other,
+                                     const Flight& other_flight) const;
   [[nodiscard]] Foreseen earliest_of_blocks(std::uint32_t i, Lanes lanes) const;
   [[nodiscard]] bool within_leash(const Record& disk, const ColdRecord& cold, double t) const;
   [[nodiscard]] double list_expiry(const Record& disk, const ColdRecord& cold) const;
@@ -181,6 +189,8 @@ class alignas(128) Strip {
   Tally tally_;
   Simulation::Bookkeeping bookkeeping_;
   GrowingArray<DiskName> candidates_;  // possible partners of a kick
+  DrawnKicks drawn_kicks_{};           // some that come soon
+  double drawn_until_ = -never;        // when the last of them comes
 
   Rows core_;                // the disks that stand here are the strip's own
   std::uint32_t reach_ = 0;  // rows beyond in which they have neighbours
