@@ -3,6 +3,7 @@
 import os
 import pathlib
 import signal
+import subprocess
 import time
 import unittest
 
@@ -66,6 +67,25 @@ class Kills(program.Case):
             code, text = faults.finish(faults.start(config, out))
             self.assertEqual(code, faults.DONE, text)
             self.assertEqual(faults.results(out), expected)
+
+    def test_the_printed_command_goes_on(self):
+        expected, _, _ = faults.undisturbed()
+        config = faults.write_config(self.folder)
+        out = self.folder / "it's a $(run) \n of \"mine\""
+        running = faults.start(config, out, "--set", "output.checkpoint_seconds=0.04")
+        running.stdout.readline()  # the preparation has begun: there is nothing in the folder yet
+        for _ in range(2):
+            running.send_signal(signal.SIGTERM)
+            code, text = faults.finish(running)
+            self.assertEqual(code, faults.RESUMABLE, text)
+            command = text.split("Go on with: sandglass ")[1].rstrip("\n")
+            running = subprocess.Popen(["bash", "-c", f'exec "$SANDGLASS" {command}'], text=True,
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+            while not (out / "checkpoint.h5").exists():
+                time.sleep(0.02)
+        code, text = faults.finish(running)
+        self.assertEqual(code, faults.DONE, text)
+        self.assertEqual(faults.results(out), expected)
 
     def test_a_second_interrupt_stops_at_once(self):
         config = faults.write_config(self.folder)

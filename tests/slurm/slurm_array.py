@@ -17,6 +17,8 @@ import sys
 import tempfile
 import time
 
+import h5py
+
 SANDGLASS = os.environ["SANDGLASS"]
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SKIPPED = 77
@@ -202,6 +204,17 @@ def hashes(campaign):
             for path in sorted((campaign / "runs").glob("*/summary.json"))}
 
 
+def collected(campaign):
+    """What sweep collect makes of a campaign, as bytes by name: the datasets of study.h5 and the tables."""
+    program("sweep", "collect", campaign)
+    assert (campaign / "report.html").stat().st_size > 0
+    results = {path.name: path.read_bytes() for path in (campaign / "csv").glob("*.csv")}
+    with h5py.File(campaign / "study.h5") as study:
+        study.visititems(lambda name, item: results.update({name: item[()].tobytes()})
+                         if isinstance(item, h5py.Dataset) else None)
+    return results
+
+
 def wait_until(condition, what, seconds):
     end = time.monotonic() + seconds
     while not condition():
@@ -240,6 +253,11 @@ def test(cluster, folder):
     program("sweep", "run", folder / "here", "--jobs", "2")
     assert hashes(campaign) == hashes(folder / "here"), "other bits than run here"
     assert len(hashes(campaign)) == POINTS
+    here, there = collected(folder / "here"), collected(campaign)
+    assert here.keys() == there.keys() and len(here) > 100
+    differing = [name for name in here if here[name] != there[name]]
+    assert not differing, f"collected, these differ from what was run here: {differing}"
+    print(f"collected: {len(here)} tables and datasets, the same bytes")
 
 
 def main():

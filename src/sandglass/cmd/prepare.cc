@@ -9,6 +9,7 @@
 
 #include "sandglass/cmd/commands.h"
 #include "sandglass/cmd/progress_bar.h"
+#include "sandglass/cmd/text.h"
 #include "sandglass/core/errors.h"
 #include "sandglass/io/config.h"
 #include "sandglass/io/state_file.h"

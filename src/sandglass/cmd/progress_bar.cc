@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "sandglass/cmd/text.h"
+
 namespace sandglass {
 
 ProgressBar::ProgressBar() : terminal_(::isatty(STDERR_FILENO) != 0) {}
@@ -45,14 +47,6 @@ void ProgressBar::show(std::string_view stage, double fraction) {
              left);
   std::fflush(stderr);
   line_open_ = true;
-}
-
-std::string duration_text(double seconds) {
-  const auto whole = static_cast<long>(seconds + 0.5);
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
-  if (whole < 48 * 3600) return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
-  return fmt::format("{} days {} h", whole / 86400, whole % 86400 / 3600);
 }
 
 }  // namespace sandglass

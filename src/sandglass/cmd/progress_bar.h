@@ -30,7 +30,4 @@ class ProgressBar {
   Clock::time_point stage_began_{}, last_shown_{};
 };
 
-/// "3 min 20 s", for people.
-std::string duration_text(double seconds);
-
 }  // namespace sandglass

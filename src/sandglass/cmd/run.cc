@@ -14,6 +14,7 @@
 #include "sandglass/cmd/commands.h"
 #include "sandglass/cmd/interrupt.h"
 #include "sandglass/cmd/progress_bar.h"
+#include "sandglass/cmd/text.h"
 #include "sandglass/core/errors.h"
 #include "sandglass/io/config.h"
 #include "sandglass/io/config_table.h"
@@ -154,7 +155,8 @@ ExitCode run_row(const Manifest& manifest, const ManifestRow& row, const Argumen
     const ExitCode code = carry_out(config, folder, true, stop_requested, was_finished ? nullptr : &*file);
     if (code == ExitCode::done) file->finished();
     if (code == ExitCode::resumable)
-      fmt::print("Stopped. Go on with: sandglass run --manifest {} --index {}\n", arguments.manifest, row.index);
+      fmt::print("Stopped. Go on with: sandglass run --manifest {} --index {}\n", shell_word(arguments.manifest),
+                 row.index);
     return code;
   } catch (const std::exception& error) {
     if (!file) file.emplace(path, Config{});
@@ -204,8 +206,12 @@ int run_command(int argc, char** argv) {
                                                                          : FolderMode::fresh);
   const ExitCode code = carry_out(config, folder, arguments.resume, stop_signal_came);
   if (code == ExitCode::resumable) {
-    const std::string config_file = folder.holds_run() ? folder.config().string() : arguments.config;
-    fmt::print("Stopped. Go on with: sandglass run {} -o {} --resume\n", config_file, arguments.folder);
+    // What was set stands in the folder's configuration, once there is one.
+    const bool begun = folder.holds_run();
+    std::string again = shell_word(begun ? folder.config().string() : arguments.config);
+    if (!begun)
+      for (const std::string& assignment : arguments.assignments) again += " --set " + shell_word(assignment);
+    fmt::print("Stopped. Go on with: sandglass run {} -o {} --resume\n", again, shell_word(arguments.folder));
   }
   return static_cast<int>(code);
 }

@@ -11,6 +11,7 @@
 #include "sandglass/cmd/commands.h"
 #include "sandglass/cmd/interrupt.h"
 #include "sandglass/cmd/progress_bar.h"
+#include "sandglass/cmd/text.h"
 #include "sandglass/core/errors.h"
 #include "sandglass/io/config_table.h"
 #include "sandglass/io/run_folder.h"
@@ -92,7 +93,7 @@ int init(const Arguments& arguments) {
   std::fflush(stdout);
   if (arguments.estimate && !change.added.empty()) print_estimate(change.added);
   fmt::print("Start it here: sandglass sweep run {}\nOn a cluster:  examples/slurm/array.sbatch, points 1 to {}\n",
-             arguments.folder, change.manifest.rows.empty() ? 0 : change.manifest.rows.back().index);
+             shell_word(arguments.folder), change.manifest.rows.empty() ? 0 : change.manifest.rows.back().index);
   return static_cast<int>(ExitCode::done);
 }
 
@@ -101,7 +102,7 @@ std::filesystem::path campaign_manifest(const std::string& folder) {
   if (!std::filesystem::exists(file))
     throw InputError(fmt::format(
         "{} holds no campaign (there is no manifest.tsv): make one by sandglass sweep init STUDY.toml -o {}", folder,
-        folder));
+        shell_word(folder)));
   return file;
 }
 
@@ -130,7 +131,7 @@ int run(const Arguments& arguments) {
   for (const FailedPoint& point : result.failed)
     fmt::print("  failed: {} {}: {}\n", point.index, point.path, point.reason);
   if (result.stopped) {
-    fmt::print("Stopped. Go on with: sandglass sweep run {}\n", arguments.folder);
+    fmt::print("Stopped. Go on with: sandglass sweep run {}\n", shell_word(arguments.folder));
     return static_cast<int>(ExitCode::resumable);
   }
   return static_cast<int>(result.failed.empty() ? ExitCode::done : ExitCode::failure);

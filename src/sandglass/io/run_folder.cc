@@ -95,16 +95,9 @@ void RunFolder::begin() {
   begun_ = true;
   if (mode_ != FolderMode::force) return;
   // config.toml goes last: until then the folder is known as a run.
-  const std::array files{start(),
-                         diagnostic(),
-                         diagnostic_state(),
-                         summary(),
-                         observables(),
-                         trajectory(),
-                         checkpoint(),
-                         previous_checkpoint(checkpoint()),
-                         report(),
-                         log(),
+  const std::array files{start(),       diagnostic(), diagnostic_state(), summary(),
+                         observables(), trajectory(), checkpoint(),       previous_checkpoint(checkpoint()),
+                         report(),      log(),        progress(),         output_log(),
                          config()};
   for (const auto& file : files) {
     std::error_code error;

@@ -40,6 +40,9 @@ class RunFolder {
   [[nodiscard]] std::filesystem::path diagnostic() const { return path_ / "diagnostic.txt"; }
   [[nodiscard]] std::filesystem::path diagnostic_state() const { return path_ / "diagnostic.h5"; }
   [[nodiscard]] std::filesystem::path log() const { return path_ / "run.log"; }
+  /// In a campaign: how far the run is, and what it printed.
+  [[nodiscard]] std::filesystem::path progress() const { return path_ / "progress.json"; }
+  [[nodiscard]] std::filesystem::path output_log() const { return path_ / "output.log"; }
 
  private:
   RunFolder(std::filesystem::path path, FolderMode mode) : path_(std::move(path)), mode_(mode) {}

@@ -58,11 +58,12 @@ TEST_CASE("another run is not overwritten without force, and then only its own f
   const auto path = folder / "run";
   std::filesystem::create_directory(path);
   for (const char* name : {"config.toml", "summary.json", "checkpoint.h5", "checkpoint.previous.h5", "trajectory.h5",
-                           "observables.h5", "report.html", "run.log", "trajectory.h5.partial", "notes.txt"}) {
+                           "observables.h5", "report.html", "run.log", "output.log", "progress.json",
+                           "progress.json.partial", "trajectory.h5.partial", "notes.txt"}) {
     spill(path / name, name);
   }
   CHECK(contains(refusal(path, FolderMode::fresh), "--force"));
-  CHECK(std::distance(std::filesystem::directory_iterator(path), {}) == 10);  // nothing touched
+  CHECK(std::distance(std::filesystem::directory_iterator(path), {}) == 13);  // nothing touched
   {
     RunFolder run = RunFolder::open(path, FolderMode::resume);
     CHECK(run.holds_run());
@@ -70,7 +71,7 @@ TEST_CASE("another run is not overwritten without force, and then only its own f
     CHECK(slurp(run.checkpoint()) == "checkpoint.h5");
   }
   { RunFolder run = RunFolder::open(path, FolderMode::force); }
-  CHECK(std::distance(std::filesystem::directory_iterator(path), {}) == 10);  // not begun
+  CHECK(std::distance(std::filesystem::directory_iterator(path), {}) == 13);  // not begun
   RunFolder run = RunFolder::open(path, FolderMode::force);
   run.begin();
   CHECK(!run.holds_run());

@@ -34,11 +34,25 @@ TEST_CASE("the expected time is that of bench/RESULTS.md, longer with length and
 }
 
 TEST_CASE("a pace is interpolated between the densities that were probed") {
-  const Pace pace{{{0.3, 1.0}, {0.7, 2.0}}};
+  const Pace pace{{{0.3, {1, 1, 1, 1}}, {0.7, {2, 2, 2, 2}}}, 1};
   const auto factor = [&](double eta) { return pace.seconds(config_at(eta)) / reference_seconds(config_at(eta)); };
   CHECK(factor(0.1) == doctest::Approx(1));
   CHECK(factor(0.5) == doctest::Approx(1.5));
   CHECK(factor(0.8) == doctest::Approx(2));
+}
+
+TEST_CASE("what large systems take beyond the table counts for them alone, and for collisions alone") {
+  const Pace pace{{{0.5, {}}}, 2};
+  const auto factor = [&](std::uint64_t particles) {
+    const Config config = config_at(0.5, particles);
+    return pace.seconds(config) / reference_seconds(config);
+  };
+  CHECK(factor(1000) == doctest::Approx(1));
+  CHECK(factor(10000) == doctest::Approx(1));
+  CHECK(factor(1000000) == doctest::Approx(2).epsilon(0.05));  // little else than collisions
+  CHECK(factor(1000000) < 2);
+  CHECK(factor(40000) > 1.3);
+  CHECK(factor(40000) < 1.6);
 }
 
 TEST_CASE(
@@ -50,10 +64,12 @@ TEST_CASE(
   configs[1].system.big_fraction = 0.3;
   const Pace pace = probe_pace(configs);
   REQUIRE(pace.factors.size() == 3);
-  for (const auto& [eta, factor] : pace.factors) {
-    CHECK(factor > 0);  // how large depends on the machine and on how it was built
-    CHECK(std::isfinite(factor));
-  }
+  for (const auto& [eta, factor] : pace.factors)
+    for (const double part : {factor.preparing, factor.collision, factor.comparison, factor.structure}) {
+      CHECK(part > 0);  // how large depends on the machine and on how it was built
+      CHECK(std::isfinite(part));
+    }
+  CHECK(pace.large > 0);
   CHECK(probe_pace({}).seconds(configs[2]) == reference_seconds(configs[2]));
 }
 
