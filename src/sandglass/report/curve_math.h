@@ -1,6 +1,7 @@
 // What is read off a measured curve, with errors: slopes, passages, integrals; and the rules of the verdicts.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ Measured crossing(const Curve& curve, double level);
 /// Integral of y dx from 0 to the last point; before the first point y is the mean of `y0` and its first value.
 /// Trapezoids in ln x, of y x. The error adds those of all points: they come from the same velocities.
 Measured integral(const Curve& curve, double y0);
+
+/// The points (x, y) of the curve that `keep` wants.
+Curve points_where(const Curve& curve, const std::function<bool(double x, double y)>& keep);
 
 /// The part of the curve with from <= x <= to.
 Curve between(const Curve& curve, double from, double to);
