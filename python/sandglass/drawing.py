@@ -10,6 +10,7 @@ import sys
 sys.path[:] = [folder for folder in sys.path if folder]  # not the working folder: its files are not part of this
 
 import json
+import math
 import os
 import re
 
@@ -41,7 +42,7 @@ LINES = {"solid": "-", "dashed": "--", "dotted": ":", "points": ""}
 def text(label):
     """A label for matplotlib: T_s becomes T with a subscript, a dollar sign stays one."""
     label = label.replace("$", r"\$")
-    label = re.sub(r"\b([A-Za-zΦψτ])_([A-Za-z0-9]+)", r"$\\mathrm{\1_{\2}}$", label)
+    label = re.sub(r"\b([A-Za-zΦχψτω])_([A-Za-z0-9]+)", r"$\\mathrm{\1_{\2}}$", label)
     return re.sub(r"10\^(-?\d+)", r"$10^{\1}$", label)
 
 
@@ -84,6 +85,8 @@ def draw_curves(axes, figure, levels, small=False):
 def draw_curve(axes, curve, levels, many, small):
     """A curve of few points with marks and error bars, one of many as a line with a band."""
     x, y, error = numbers(curve["x"]), numbers(curve["y"]), numbers(curve["error"])
+    if not any(math.isfinite(e) for e in error):
+        error = []
     colour = colour_of(curve, levels)
     style = {"color": colour, "linestyle": LINES[curve["line"]], "label": text(curve["name"])}
     if curve["role"] == "guide":
@@ -147,11 +150,28 @@ def draw_map(axes, figure):
     axes.figure.colorbar(image, ax=axes, label=axis_text(grid["scale"]), pad=0.02, aspect=30)
 
 
+def legend_names(figure):
+    """The names that a legend needs, with the curve that shows each. Of a family drawn twice ("η = 0.7" and, in another
+    style, "η = 0.7, Gaussian") the second is explained once, by what its names add."""
+    drawn = {curve["name"]: curve for curve in figure["curves"] if curve["role"] != "guide"}
+    few = len(levels_of(figure)) <= len(FEW)
+    names = {}
+    for name, curve in drawn.items():
+        base, _, added = name.partition(", ")
+        if curve["role"] == "family" and added and base in drawn:
+            names.setdefault(added, {**curve, "name": added, "role": "guide"})
+        elif curve["role"] != "family" or few:
+            names[name] = curve
+    return names
+
+
+def legend_columns(names):
+    return max(1, min(len(names), 4, 56 // (max(map(len, names)) + 7)))
+
+
 def add_key(axes, figure, levels):
     """A legend above the axes; a colour bar for a family of many curves, and a legend for the other curves. Returns the
     number of lines of the legend."""
-    handles = dict(zip(*reversed(axes.get_legend_handles_labels())))
-    names = [name for name in dict.fromkeys(text(curve["name"]) for curve in figure["curves"]) if name in handles]
     if len(levels) > len(FEW):
         norm = colors.BoundaryNorm([i - 0.5 for i in range(len(levels) + 1)], len(levels))
         bar = axes.figure.colorbar(ScalarMappable(norm, colour_map(levels)), ax=axes, pad=0.02, aspect=30)
@@ -159,20 +179,22 @@ def add_key(axes, figure, levels):
         bar.ax.tick_params(length=0)
         bar.minorticks_off()
         bar.set_label(axis_text(figure["family"]), fontsize=7)
-        family = {text(curve["name"]) for curve in figure["curves"] if curve["role"] == "family"}
-        names = [name for name in names if name not in family]
+    names = legend_names(figure)
     if not names or (len(names) == 1 and len(figure["curves"]) == 1):
         return 0
-    columns = max(1, min(len(names), 4, 56 // (max(map(len, names)) + 7)))
-    axes.legend([handles[name] for name in names], names, loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncol=columns)
+    drawn = dict(zip(*reversed(axes.get_legend_handles_labels())))
+    handles = [drawn[text(name)] if text(name) in drawn else
+               axes.plot([], [], color=ROLES["guide"], linestyle=LINES[curve["line"]],
+                         marker="o" if curve["line"] == "points" else "", markerfacecolor="none")[0]
+               for name, curve in names.items()]
+    columns = legend_columns(names)
+    axes.legend(handles, [text(name) for name in names], loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncol=columns)
     return -(-len(names) // columns)
 
 
 def legend_lines(figure):
-    """About how many lines its legend will have."""
-    names = {curve["name"] for curve in figure["curves"]
-             if curve["role"] != "guide" and (curve["role"] != "family" or len(levels_of(figure)) <= len(FEW))}
-    return -(-len(names) // 3)
+    names = legend_names(figure)
+    return -(-len(names) // legend_columns(names)) if names else 0
 
 
 def crowding(axes, corner, size):

@@ -82,7 +82,7 @@ def write_run(folder, eta, eps, seed):
         group = f"/dynamics/{species}"
         msd = size * displacement(eta, eps, t)
         file.measured(f"{group}/mean_square_displacement", axes, msd, NOISE * msd)
-        file.measured(f"{group}/velocity_autocorrelation", axes, 2 / mass * velocity(eta, eps, s), 2e-4)
+        file.measured(f"{group}/velocity_autocorrelation", axes, 2 / mass * velocity(eta, eps, s), 5e-5)
         file.put(f"{group}/velocity_autocorrelation/equal_time_value", 2 / mass)
         file.put(f"{group}/velocity_autocorrelation/equal_time_error", 0.001)
         running = np.gradient(msd, t) / 4
@@ -94,10 +94,27 @@ def write_run(folder, eta, eps, seed):
         kinds = {"wavenumber": k, **axes}
         file.measured(f"{group}/self_intermediate_scattering", kinds, scattering)
         file.measured(f"{group}/gaussian_approximation", kinds, gaussian, 1e-9)
+        # A hump in ln t where the cage opens, higher and later the denser; overlap and displacement as the MSD goes.
+        hump = (0.1 + 20 * max(0, eta - 0.68)) * np.exp(-np.log(diffusion(eta, eps) * t / 0.02) ** 2)
+        file.measured(f"{group}/non_gaussian", axes, hump)
+        file.measured(f"{group}/susceptibility", axes, 10 * hump)
+        file.measured(f"{group}/overlap", axes, np.exp(-msd))
+        file.measured(f"{group}/cage_relative_displacement", axes, msd * (0.6 + 0.5 * np.exp(-t)), NOISE * msd)
+        ages = np.array([0.5, 1.5, 2.5])
+        file.put(f"{group}/mean_square_displacement/interval_value", msd / (1 + 0.1 * ages[:, None] * (eta > 0.79)))
+        r, lags = np.geomspace(1e-3, 30, 90), np.geomspace(0.1, 100, 4)
+        square = size * displacement(eta, eps, lags)[:, None]
+        gaussian = np.exp(-r**2 / square) / (np.pi * square)
+        file.measured(f"{group}/van_hove", {"time": lags, "r": r}, gaussian, NOISE * gaussian,
+                      count=np.where(gaussian > 1e-6, 1000, 0))
         late = np.geomspace(1e-3, 2000, 60)  # the selection is by displacement at t = 1000
         far = size * displacement(eta, eps, late)
         for speed, value in (("fastest", far * (1 + 8 * late / (late + 3))), ("slowest", 0.05 * far / (far + 0.05))):
             file.measured(f"{group}/mobility/{speed}", {"time": late, "collisions": rate * late}, value, 0.01 * value)
+    file.put("/dynamics/waiting_time", ages * 100 * (1 + 0.002 * seed))
+    shells = np.geomspace(2 * np.pi / box, 3, 20)
+    for part, excess in (("transverse", 1 - eps), ("longitudinal", 0)):
+        file.measured(f"/structure/velocity/{part}", {"wavenumber": shells}, 1 + 2 * excess / (1 + (5 * shells) ** 2), 0.05)
     r = np.arange(0.05, 15, 0.1)
     for pair, contact in (("all", 2.4), ("small_small", 2), ("small_big", 2.43), ("big_big", 2.86)):
         file.measured("/structure/radial_distribution", {"r": r}, pair_correlation(eta, r, contact), 0.005,
@@ -134,6 +151,10 @@ def write_run(folder, eta, eps, seed):
         "collisions_per_particle": length, "temperature": {"all": 1.0, "small": 1.05, "big": 0.95},
         "collision_rate": rate * (1 + 1e-3 * generator.standard_normal()),
         "compressibility_factor": 1 / (1 - eta) ** 2, "stationary": eta < 0.805,
+        "energy": {"injected": 100 * (1 - eps) * rate, "dissipated": 100 * (1 - eps) * rate * (1 + 1e-6), "balance": 1e-15},
+        "collision_rate_by_pair": {"small_small": 0.45 * rate, "small_big": 0.5 * rate, "big_small": 0.5 * rate,
+                                   "big_big": 0.55 * rate},
+        "velocity_correlation_length": 5.0 if eps < 0.8 else None,
         "diffusion": {"small": {"from_msd": 0.01, "error": 0.001, "at_collisions": 1000, "from_vacf": 0.02,
                                 "vacf_error": 0.001}} if eta == 0.3 else {},
         "msd_exponent": {"small": {"value": exponent + 0.3 * error * generator.standard_normal(), "error": error,

@@ -108,15 +108,19 @@ Measured crossing(const Curve& curve, double level) {
   return {};
 }
 
-Curve between(const Curve& curve, double from, double to) {
+Curve points_where(const Curve& curve, const std::function<bool(double, double)>& keep) {
   Curve part = curve;
   for (auto column : {&Curve::x, &Curve::y, &Curve::error, &Curve::alternative_x}) {
     (part.*column).clear();
     if ((curve.*column).empty()) continue;
     for (std::size_t i = 0; i < curve.x.size(); ++i)
-      if (curve.x[i] >= from && curve.x[i] <= to) (part.*column).push_back((curve.*column)[i]);
+      if (keep(curve.x[i], curve.y[i])) (part.*column).push_back((curve.*column)[i]);
   }
   return part;
+}
+
+Curve between(const Curve& curve, double from, double to) {
+  return points_where(curve, [&](double x, double) { return x >= from && x <= to; });
 }
 
 double standard_error_of_difference(const Measured& a, const Measured& b) { return std::hypot(a.error, b.error); }

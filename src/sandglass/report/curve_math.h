@@ -1,6 +1,7 @@
 // What is read off a measured curve, with errors: slopes, passages, integrals; and the rules of the verdicts.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +25,9 @@ Measured value_at(const Curve& curve, double x);
 /// The first x at which the curve reaches `level` from either side, linear in ln x and, where y > 0, in ln y; error =
 /// error of y / |slope|. NaN when it never does.
 Measured crossing(const Curve& curve, double level);
+
+/// The points (x, y) of the curve that `keep` wants.
+Curve points_where(const Curve& curve, const std::function<bool(double x, double y)>& keep);
 
 /// The part of the curve with from <= x <= to.
 Curve between(const Curve& curve, double from, double to);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sandglass/report/correlation.h"
+#include "sandglass/report/curve_math.h"
 #include "sandglass/report/number.h"
 #include "sandglass/study/results.h"
 
@@ -228,21 +229,6 @@ void add_history_figures(const Results& results, std::vector<Figure>& figures) {
   for (Figure* figure : {&temperature, &ratio, &count}) figures.push_back(std::move(*figure));
 }
 
-/// Leaves out the points of a curve that are no numbers (a species that has no disks, say).
-void keep_numbers(Curve& curve) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < curve.y.size(); ++i) {
-    if (!std::isfinite(curve.y[i]) || !std::isfinite(curve.x[i])) continue;
-    for (auto* column : {&curve.x, &curve.y, &curve.error, &curve.alternative_x}) {
-      if (!column->empty()) (*column)[kept] = (*column)[i];
-    }
-    ++kept;
-  }
-  for (auto* column : {&curve.x, &curve.y, &curve.error, &curve.alternative_x}) {
-    if (!column->empty()) column->resize(kept);
-  }
-}
-
 }  // namespace
 
 std::vector<Figure> run_figures(const Results& results, const Summary& summary) {
@@ -251,7 +237,8 @@ std::vector<Figure> run_figures(const Results& results, const Summary& summary) 
   add_velocity_figures(results, figures);
   add_history_figures(results, figures);
   for (Figure& figure : figures) {
-    for (Curve& curve : figure.curves) keep_numbers(curve);
+    for (Curve& curve : figure.curves)  // a species that has no disks, say, has no numbers
+      curve = points_where(curve, [](double x, double y) { return std::isfinite(x) && std::isfinite(y); });
     std::erase_if(figure.curves, [](const Curve& curve) { return curve.y.empty(); });
   }
   return figures;

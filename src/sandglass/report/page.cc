@@ -77,18 +77,21 @@ std::string safe_in_script(const std::string& json) {
   return safe;
 }
 
-std::string html_of(std::string_view frame, const Json& data, std::string_view script) {
+std::string html_of(std::string_view content, const Json& data, std::string_view script) {
   // Bytes that are no UTF-8 (a file name may hold any) are replaced, not refused.
   const std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
   const std::pair<std::string_view, std::string> parts[] = {
       {"{{library-style}}", std::string(page_files::library_style)},
       {"{{style}}", std::string(page_files::style)},
+      {"{{content}}", std::string(content)},
       {"{{data}}", safe_in_script(text)},
       {"{{library-licence}}", std::string(page_files::library_licence)},
       {"{{library}}", std::string(page_files::library)},
       {"{{plot}}", std::string(page_files::plot)},
       {"{{figure}}", std::string(page_files::figure)},
+      {"{{frame-script}}", std::string(page_files::frame_script)},
       {"{{script}}", std::string(script)}};
+  std::string_view frame = page_files::frame;
   std::string html;
   for (const auto& [mark, part] : parts) {  // in the order of the frame, so that no part is searched for marks
     const std::size_t at = frame.find(mark);
@@ -98,6 +101,8 @@ std::string html_of(std::string_view frame, const Json& data, std::string_view s
   return html.append(frame);
 }
 
-std::string page_html(const Page& page) { return html_of(page_files::html, json_of(page), page_files::script); }
+std::string page_html(const Page& page) {
+  return html_of(page_files::run_content, json_of(page), page_files::run_script);
+}
 
 }  // namespace sandglass

@@ -36,8 +36,9 @@ struct Page {
 /// reader as text, whatever characters it holds.
 std::string page_html(const Page& page);
 
-/// The same for any page: `frame` (HTML with marks) and `script`, which fills it from `data`.
-std::string html_of(std::string_view frame, const nlohmann::ordered_json& data, std::string_view script);
+/// The same for any page: `content`, what stands between its head and its foot, and `script`, which fills it from
+/// `data`. All pages begin with `data`'s title, subtitle, summary and highlights.
+std::string html_of(std::string_view content, const nlohmann::ordered_json& data, std::string_view script);
 
 /// JSON that may stand inside <script>: <, >, & and the two line separators of Unicode are written as \uXXXX, which
 /// inside JSON strings is the same text and can neither end the script nor open a comment.

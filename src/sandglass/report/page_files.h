@@ -5,7 +5,7 @@
 
 namespace sandglass::page_files {
 
-extern const std::string_view html, style, script, plot, figure, study_html, study_script, library, library_style,
-    library_licence, python_drawing;
+extern const std::string_view frame, frame_script, style, plot, figure, run_content, run_script, study_content,
+    study_script, library, library_style, library_licence, python_drawing;
 
 }  // namespace sandglass::page_files

@@ -43,17 +43,17 @@ MakeCurve divided(double (*divisor)(double)) {
   };
 }
 
-/// Exponent of a curve from s = 100 to s = 1000, at the points of large systems.
+/// Exponent of a curve from s = 100 to s = 1000, at the points of large systems up to a density.
 struct LateSlope {
   std::string name;
   Measured exponent;
 };
 
-std::vector<LateSlope> late_slopes(const Study& study, const MakeCurve& make) {
+std::vector<LateSlope> late_slopes(const Study& study, const MakeCurve& make, double highest_density) {
   std::vector<LateSlope> slopes;
   for (const double restitution : tail_restitutions) {
     for (const StatePoint* point : densities_at(study, restitution, Prefer::largest).points) {
-      if (point->config.system.particles < large) continue;
+      if (point->config.system.particles < large || point->packing_fraction() > highest_density + 1e-4) continue;
       const auto curve = make(*point);
       if (!curve) continue;
       const Measured a = value_at(*curve, 100), b = value_at(*curve, 1000);
@@ -90,18 +90,17 @@ Figure growth(const Study& study) {
     figure.panels.assign(std::make_move_iterator(panels.begin() + 1), std::make_move_iterator(panels.end()));
   }
   Check check{"D grows from s = 100 to s = 1000 (η ≤ 0.6)", Outcome::not_enough_data, needs_large};
-  std::string grows, flat;
-  for (const LateSlope& slope : late_slopes(study, diffusion)) {
+  std::string grows, shrinks, unclear;
+  for (const LateSlope& slope : late_slopes(study, diffusion, 0.6)) {
     const std::string text =
         fmt::format(" {} ({});", with_error(slope.exponent.value, slope.exponent.error), slope.name);
-    if (slope.exponent.value > significant_order * slope.exponent.error)
-      grows += text;
-    else
-      flat += text;
+    const double error = significant_order * slope.exponent.error;
+    (slope.exponent.value > error ? grows : slope.exponent.value < -error ? shrinks : unclear) += text;
   }
-  if (!grows.empty() || !flat.empty()) {
-    check.outcome = flat.empty() ? Outcome::agrees : Outcome::differs;
-    check.finding = "Exponents of D(s): " + (flat.empty() ? grows : "not above zero:" + flat + " above zero:" + grows);
+  if (!grows.empty() || !shrinks.empty() || !unclear.empty()) {
+    check.outcome = !shrinks.empty() ? Outcome::differs : grows.empty() ? Outcome::not_enough_data : Outcome::agrees;
+    check.finding = "Exponents of D(s):" + grows + (shrinks.empty() ? "" : " falling:" + shrinks) +
+                    (unclear.empty() ? "" : " zero within three errors:" + unclear);
     check.finding.back() = '.';
   }
   figure.checks = {check};
@@ -124,15 +123,20 @@ Figure logarithms(const Study& study) {
   for (const auto& [make, name] : {std::pair(by_log, "D/ln s"), std::pair(by_root, "D/√ln s")}) {
     Check check{fmt::format("{} is not flat over all densities (100 < s < 1000)", name), Outcome::not_enough_data,
                 needs_large};
-    std::string bent;
-    const auto slopes = late_slopes(study, make);
-    for (const LateSlope& slope : slopes)
-      if (std::abs(slope.exponent.value) > significant_order * slope.exponent.error)
-        bent += fmt::format(" {} ({});", with_error(slope.exponent.value, slope.exponent.error), slope.name);
-    if (!slopes.empty()) {
+    std::string bent, flat;
+    const auto slopes = late_slopes(study, make, 1);
+    for (const LateSlope& slope : slopes) {
+      const auto& [value, error] = slope.exponent;
+      const std::string text = fmt::format(" {} ({});", with_error(value, error), slope.name);
+      if (std::abs(value) > significant_order * error)
+        bent += text;
+      else if (error < 0.05)
+        flat += text;
+    }
+    if (!bent.empty() || !flat.empty()) {
       check.outcome = bent.empty() ? Outcome::differs : Outcome::agrees;
-      check.finding = bent.empty() ? "All exponents are zero within three errors." : "Exponents:" + bent;
-      if (!bent.empty()) check.finding.back() = '.';
+      check.finding = "Exponents:" + bent + (flat.empty() ? "" : " zero within three errors:" + flat);
+      check.finding.back() = '.';
     }
     figure.checks.push_back(check);
   }

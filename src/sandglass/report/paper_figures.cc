@@ -19,21 +19,11 @@ void tidy(Figure& figure) {
 
 /// A number of the summaries against density.
 Figure overview(const Study& study, std::string id, std::string title, std::string caption, Axis y,
-                const std::function<Measured(const StatePoint&)>& number) {
+                const Number& number) {
   Figure figure{.id = std::move(id), .title = std::move(title), .caption = std::move(caption), .x = density_axis};
   figure.y = std::move(y);
   figure.family = restitution_axis;
-  for (const double restitution : restitutions_of(study)) {
-    Curve curve{.name = fmt::format("ε = {:g}", restitution), .role = Role::family, .level = restitution};
-    for (const StatePoint* point : densities_at(study, restitution).points) {
-      const Measured value = number(*point);
-      if (!std::isfinite(value.value)) continue;
-      curve.x.push_back(point->packing_fraction());
-      curve.y.push_back(value.value);
-      curve.error.push_back(value.error);
-    }
-    if (!curve.x.empty()) figure.curves.push_back(std::move(curve));
-  }
+  figure.curves = against_density(study, number);
   if (figure.curves.empty()) figure.missing = "Not measured in these runs.";
   return figure;
 }
@@ -46,6 +36,8 @@ std::vector<Figure> paper_figures(const Study& study) {
   add_relaxation_figures(study, figures);
   add_diffusion_figures(study, figures);
   add_structure_figures(study, figures);
+  add_mobility_figures(study, figures);
+  add_flow_figures(study, figures);
   std::stable_sort(figures.begin(), figures.end(), [](const Figure& a, const Figure& b) { return a.id < b.id; });
   for (Figure& figure : figures) tidy(figure);
   return figures;

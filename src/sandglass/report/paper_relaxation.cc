@@ -70,15 +70,25 @@ Check diffusion_regained(const Family& family) {
   return check;
 }
 
+/// What stands behind the numbers of a point.
+std::string described(const StatePoint& point) {
+  const std::size_t runs = point.replicas.size();
+  const auto ageing = std::count_if(point.replicas.begin(), point.replicas.end(),
+                                    [](const Replica& replica) { return !replica.summary.stationary; });
+  std::string text =
+      fmt::format("with N = {}, {} start{} and {} collisions per disk in all", point.config.system.particles, runs,
+                  runs == 1 ? "" : "s", short_number(point.length()));
+  if (ageing > 0) text += fmt::format(" ({} not stationary)", ageing);
+  return text;
+}
+
 Check exponent_check(const Family& family, const Measured& paper) {
   const std::string claim = fmt::format("At η = 0.81 MSD ~ t^{} over 1 < t < 10", with_error(paper.value, paper.error));
   for (const StatePoint* point : family.points) {
     if (!same_level(point->packing_fraction(), 0.81)) continue;
     const auto msd = displacement(*point);
     const bool covered = msd && msd->x.back() > 9;
-    const std::string where =
-        fmt::format("with N = {}, {} start{} and {} collisions per disk in all", point->config.system.particles,
-                    point->replicas.size(), point->replicas.size() == 1 ? "" : "s", short_number(point->length()));
+    const std::string where = described(*point);
     return compare(claim, covered ? point->number("msd_exponent/small/value") : Measured{}, paper,
                    covered ? where : "up to t = 10 at η = 0.81");
   }
@@ -118,13 +128,6 @@ Measured unit_time(const StatePoint& point) {
   return msd ? crossing(*msd, 1) : Measured{};
 }
 
-std::vector<Ranked> ranked(const Curve& curve) {
-  std::vector<Ranked> sequence;
-  for (std::size_t i = 0; i < curve.x.size(); ++i)
-    sequence.push_back({curve.x[i], {curve.y[i], curve.error.empty() ? Measured{}.error : curve.error[i]}});
-  return sequence;
-}
-
 Figure unit_times(const Study& study) {
   Figure figure = paper_figure(7, "Time to move by one radius", "t at which the MSD of the small disks is Rₛ².",
                                density_axis, {"t(MSD = 1)", "Rₛ √(mₛ/T₀)", true},
@@ -133,20 +136,11 @@ Figure unit_times(const Study& study) {
   figure.family = restitution_axis;
   std::vector<double> lacking(paper_restitutions.begin(), paper_restitutions.end());
   std::vector<Check> with_density, with_restitution, lines;
-  for (const double restitution : restitutions_of(study)) {
-    Curve curve{.name = fmt::format("ε = {:g}", restitution), .role = Role::family, .level = restitution};
-    for (const StatePoint* point : densities_at(study, restitution).points) {
-      const Measured time = unit_time(*point);
-      if (!std::isfinite(time.value)) continue;
-      curve.x.push_back(point->packing_fraction());
-      curve.y.push_back(time.value);
-      curve.error.push_back(time.error);
-    }
+  figure.curves = against_density(study, unit_time);
+  for (const Curve& curve : figure.curves)
+    with_density.push_back(rises("", ranked(curve), fmt::format("At ε = {:g} t(MSD = 1)", curve.level), "η"));
+  for (const double restitution : restitutions_of(study))
     std::erase_if(lacking, [&](double e) { return same_level(e, restitution); });
-    if (curve.x.empty()) continue;
-    with_density.push_back(rises("", ranked(curve), fmt::format("At ε = {:g} t(MSD = 1)", restitution), "η"));
-    figure.curves.push_back(std::move(curve));
-  }
   if (!lacking.empty()) figure.missing = fmt::format("Not in this study: ε = {}.", listed(lacking));
   if (figure.curves.empty()) figure.missing += " No run reaches MSD = 1.";
   for (const double density : densities_of(study)) {

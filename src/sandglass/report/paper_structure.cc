@@ -16,24 +16,6 @@ using Outcome = Check::Outcome;
 
 constexpr std::array<double, 6> structure_densities{0.5, 0.52, 0.55, 0.58, 0.6, 0.8};
 
-/// A function of one argument as it stands in the results.
-std::optional<Curve> plain_curve(const StatePoint& point, const std::string& group, const std::string& x,
-                                 const std::string& y, const std::string& error) {
-  Curve all{.name = ""};
-  all.x = numbers_of(point.results, group + "/" + x);
-  const auto values = numbers_of(point.results, group + "/" + y),
-             errors = numbers_of(point.results, group + "/" + error);
-  if (values.empty() || values.size() != all.x.size()) return std::nullopt;
-  Curve curve{.name = ""};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i])) continue;
-    curve.x.push_back(all.x[i]);
-    curve.y.push_back(values[i]);
-    if (errors.size() == values.size()) curve.error.push_back(errors[i]);
-  }
-  return curve;
-}
-
 std::optional<Curve> radial(const StatePoint& point, const std::string& pair) {
   return plain_curve(point, "/structure/radial_distribution", "r", pair, pair + "_error");
 }
@@ -171,18 +153,11 @@ Figure bond_order(const Study& study) {
       17, "Sixfold bond order", "ψ₆ of the whole system against density (all disks). Right: its correlation g₆(r).",
       density_axis, {"ψ₆", "", false}, "No long-range bond order: the dense states are glasses, not crystals.");
   figure.family = restitution_axis;
-  for (const double e : restitutions_of(study)) {
-    Curve curve{.name = fmt::format("ε = {:g}", e), .role = Role::family, .level = e};
-    for (const StatePoint* point : densities_at(study, e).points) {
-      const auto value = numbers_of(point->results, "/structure/bond_order/global");
-      const auto error = numbers_of(point->results, "/structure/bond_order/global_error");
-      if (value.empty() || !std::isfinite(value.front())) continue;
-      curve.x.push_back(point->packing_fraction());
-      curve.y.push_back(value.front());
-      curve.error.push_back(error.empty() ? Measured{}.error : error.front());
-    }
-    if (!curve.x.empty()) figure.curves.push_back(std::move(curve));
-  }
+  figure.curves = against_density(study, [](const StatePoint& p) -> Measured {
+    const auto value = numbers_of(p.results, "/structure/bond_order/global");
+    const auto error = numbers_of(p.results, "/structure/bond_order/global_error");
+    return {value.empty() ? Measured{}.value : value.front(), error.empty() ? Measured{}.error : error.front()};
+  });
   if (figure.curves.empty()) figure.missing = "Not measured in these runs: /structure/bond_order.";
   Figure panel = part_of(figure, "b", fmt::format("Correlation of the bond order, ε = {:g}", restitution),
                          {"distance r", "Rₛ", false}, {"g₆(r)", "", false});

@@ -154,10 +154,50 @@ std::optional<Curve> small_curve(const StatePoint& point, const std::string& qua
   return curve_of(*c, "", Role::small, static_cast<std::size_t>(nearest - k.begin()));
 }
 
+std::optional<Curve> plain_curve(const StatePoint& point, const std::string& group, const std::string& x,
+                                 const std::string& y, const std::string& error) {
+  Curve all{.name = ""};
+  all.x = numbers_of(point.results, group + "/" + x);
+  const auto values = numbers_of(point.results, group + "/" + y),
+             errors = numbers_of(point.results, group + "/" + error);
+  if (values.empty() || values.size() != all.x.size()) return std::nullopt;
+  Curve curve{.name = ""};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    curve.x.push_back(all.x[i]);
+    curve.y.push_back(values[i]);
+    if (errors.size() == values.size()) curve.error.push_back(errors[i]);
+  }
+  return curve;
+}
+
 Curve against_collisions(Curve curve) {
   if (curve.alternative_x.size() != curve.x.size()) return {};
   std::swap(curve.x, curve.alternative_x);
   return curve;
+}
+
+std::vector<Curve> against_density(const Study& study, const Number& number) {
+  std::vector<Curve> curves;
+  for (const double restitution : restitutions_of(study)) {
+    Curve curve{.name = fmt::format("ε = {:g}", restitution), .role = Role::family, .level = restitution};
+    for (const StatePoint* point : densities_at(study, restitution).points) {
+      const Measured value = number(*point);
+      if (!std::isfinite(value.value)) continue;
+      curve.x.push_back(point->packing_fraction());
+      curve.y.push_back(value.value);
+      curve.error.push_back(value.error);
+    }
+    if (!curve.x.empty()) curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+std::vector<Ranked> ranked(const Curve& curve) {
+  std::vector<Ranked> sequence;
+  for (std::size_t i = 0; i < curve.x.size(); ++i)
+    sequence.push_back({curve.x[i], {curve.y[i], curve.error.empty() ? Measured{}.error : curve.error[i]}});
+  return sequence;
 }
 
 Figure paper_figure(int number, std::string title, std::string caption, Axis x, Axis y, std::string statement) {

@@ -60,11 +60,22 @@ void add_family(Figure& figure, const Family& family, std::span<const double> wa
 std::optional<Curve> small_curve(const StatePoint& point, const std::string& quantity);
 /// A row of it, for the wavenumber nearest to `wavenumber` (within a tenth).
 std::optional<Curve> small_curve(const StatePoint& point, const std::string& quantity, double wavenumber);
+/// A measured function of one argument: datasets `x`, `y`, `error` of a group of the results.
+std::optional<Curve> plain_curve(const StatePoint& point, const std::string& group, const std::string& x,
+                                 const std::string& y, const std::string& error);
 /// The same curve with collisions per disk as x and time as the second axis.
 Curve against_collisions(Curve curve);
 
-/// A figure of the paper with nothing in it yet. Ids are "fig01" and so on.
-Figure paper_figure(int number, std::string title, std::string caption, Axis x, Axis y, std::string statement);
+using Number = std::function<Measured(const StatePoint&)>;
+
+/// A number of the state points against density, where it is known: a curve for each restitution of the study.
+std::vector<Curve> against_density(const Study& study, const Number& number);
+
+/// The points of a curve as a sequence that may rise or fall.
+std::vector<Ranked> ranked(const Curve& curve);
+
+/// A numbered figure with nothing in it yet. Ids are "fig01" and so on. One beyond the paper has no statement.
+Figure paper_figure(int number, std::string title, std::string caption, Axis x, Axis y, std::string statement = {});
 
 /// A part of it: panel or inset.
 Figure part_of(const Figure& whole, const std::string& suffix, std::string title, Axis x, Axis y);

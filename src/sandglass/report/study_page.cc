@@ -41,8 +41,10 @@ std::size_t run_count(const Study& study) {
 }
 
 std::vector<std::string> summary_of(const Study& study, const std::vector<Figure>& figures) {
+  const auto of_paper = [](const Figure& f) { return !f.statement.empty(); };
   const auto with = [&](Check::Outcome outcome) {
-    return std::count_if(figures.begin(), figures.end(), [&](const Figure& f) { return verdict(f) == outcome; });
+    return std::count_if(figures.begin(), figures.end(),
+                         [&](const Figure& f) { return of_paper(f) && verdict(f) == outcome; });
   };
   std::size_t unsteady = 0;
   double length = 0;
@@ -53,10 +55,11 @@ std::vector<std::string> summary_of(const Study& study, const std::vector<Figure
   std::vector<std::string> text{
       fmt::format("{} at {} were merged, {} collisions per disk in all.", counted(run_count(study), "finished run"),
                   counted(study.points.size(), "state point"), short_number(length)),
-      fmt::format("Of {} figures {} agree with what the paper reports, {} differ in at least one point, and for {} "
-                  "there are not enough data.",
-                  figures.size(), with(Check::Outcome::agrees), with(Check::Outcome::differs),
-                  with(Check::Outcome::not_enough_data))};
+      fmt::format(
+          "Of the paper's {} figures {} agree with what it reports, {} differ in at least one point, and for {} "
+          "there are not enough data.",
+          std::count_if(figures.begin(), figures.end(), of_paper), with(Check::Outcome::agrees),
+          with(Check::Outcome::differs), with(Check::Outcome::not_enough_data))};
   if (unsteady > 0)
     text.push_back(
         fmt::format("{} did not pass the test of stationarity: what is averaged there may change with the "
@@ -138,7 +141,7 @@ std::string study_html(const Study& study, const std::vector<Figure>& figures, c
   for (const PlaneQuantity& q : plane_quantities)
     json["quantities"].push_back({{"key", q.key}, {"label", q.label}, {"log", q.log}});
   for (const AbsentRun& run : study.absent) json["absent"].push_back({run.path, run.why});
-  return html_of(page_files::study_html, json, page_files::study_script);
+  return html_of(page_files::study_content, json, page_files::study_script);
 }
 
 void write_study_report(const Study& study, const std::vector<Figure>& figures, const fs::path& folder) {

@@ -55,6 +55,27 @@ TEST_CASE("weights") {
   CHECK(merged.error == doctest::Approx(3));
 }
 
+TEST_CASE("intervals are merged one by one") {
+  const std::string group = "/dynamics/small/mean_square_displacement/";
+  const auto with_intervals = [&](double shift) {
+    RunResults r = run(1, 1);
+    r.datasets.push_back({group + "interval", {2}, std::vector<double>{0, 1}, ""});
+    std::vector<double> values(40);
+    for (std::size_t i = 0; i < 40; ++i) values[i] = (i < 20 ? 1 : 5) + shift;
+    r.datasets.push_back({group + "interval_value", {2, 20}, values, "R_s^2"});
+    r.datasets.push_back({"/dynamics/interval", {2}, std::vector<double>{0, 1}, ""});
+    r.datasets.push_back({"/dynamics/waiting_time", {2}, std::vector<double>{10 + shift, 20 + shift}, "t"});
+    return r;
+  };
+  const auto merged = merge_results(std::vector{with_intervals(-0.5), with_intervals(0.5)});
+  CHECK(numbers_of(merged, "/dynamics/waiting_time") == std::vector<double>{10, 20});
+  const auto value = msd(merged, "interval_value"), error = msd(merged, "interval_error");
+  REQUIRE(value.size() == 40);
+  CHECK(value[0] == 1);
+  CHECK(value[39] == 5);
+  CHECK(error[0] == doctest::Approx(0.5));  // sqrt(2/1 (0.5^2 + 0.5^2)) / 2
+}
+
 TEST_CASE("what is unknown does not spoil the rest") {
   CHECK(std::isnan(merge({}).value));
   const Measured single = merge(std::vector<Sample>{{2, 0.3, 7}, {unknown, 0.1, 5}, {4, 0.1, 0}});

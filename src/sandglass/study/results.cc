@@ -1,6 +1,7 @@
 #include "sandglass/study/results.h"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include "sandglass/io/hdf5.h"
@@ -12,6 +13,10 @@ std::vector<Quantity> make_quantities() {
   std::vector<Quantity> list;
   auto of_lag = [&](const std::string& group) {
     list.push_back({.group = group, .axes = {"time"}, .companion = "collisions"});
+  };
+  auto of_interval = [&](const std::string& group, std::vector<std::string> axes) {
+    list.push_back(
+        {.group = group, .axes = std::move(axes), .value = "interval_value", .error = "interval_error", .count = ""});
   };
   for (const std::string species : {"all", "small", "big"}) {
     const std::string dynamics = "/dynamics/" + species + "/";
@@ -27,6 +32,8 @@ std::vector<Quantity> make_quantities() {
     for (const char* name : {"self_intermediate_scattering", "gaussian_approximation"})
       list.push_back({.group = dynamics + name, .axes = {"wavenumber", "time"}, .companion = "collisions"});
     list.push_back({.group = dynamics + "van_hove", .axes = {"time", "r"}});
+    of_interval(dynamics + "mean_square_displacement", {"interval", "time"});
+    of_interval(dynamics + "self_intermediate_scattering", {"interval", "wavenumber", "time"});
     list.push_back({.group = "/timeseries",
                     .axes = {"time"},
                     .value = "temperature_" + species,
@@ -55,10 +62,20 @@ std::vector<Quantity> make_quantities() {
   for (const std::string name : {"global", "local"})
     list.push_back(
         {.group = "/structure/bond_order", .axes = {}, .value = name, .error = name + "_error", .count = ""});
+  list.push_back({.group = "/dynamics", .axes = {"interval"}, .value = "waiting_time", .error = "", .count = ""});
   list.push_back({.group = "/structure/bond_order/correlation", .axes = {"r"}});
   for (const char* name : {"transverse", "longitudinal"})
     list.push_back({.group = std::string("/structure/velocity/") + name, .axes = {"wavenumber"}});
   return list;
+}
+
+/// The argument of what is kept apart by intervals is not in the file: their number, counted from 0.
+void number_intervals(const Quantity& q, std::vector<Dataset>& results) {
+  const Dataset* values = find_dataset(results, q.path(q.value));
+  if (values == nullptr || values->shape.empty() || find_dataset(results, q.path("interval")) != nullptr) return;
+  std::vector<double> numbers(values->shape.front());
+  std::iota(numbers.begin(), numbers.end(), 0.0);
+  results.push_back({q.path("interval"), {numbers.size()}, std::move(numbers), ""});
 }
 
 }  // namespace
@@ -85,6 +102,7 @@ std::vector<Dataset> read_results(const std::filesystem::path& path) {
     for (const std::string& axis : q.axes) read(q.path(axis));
     for (const std::string& part : {q.companion, q.value, q.error, q.count})
       if (!part.empty()) read(q.path(part));
+    if (!q.axes.empty() && q.axes.front() == "interval") number_intervals(q, results);
   }
   for (const char* species : {"all", "small"})  // a map has no arguments of its own: index times spacing
     read("/structure/structure_factor/" + std::string(species) + "/map");

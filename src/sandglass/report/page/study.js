@@ -1,15 +1,12 @@
 "use strict";
 // Fills the page of a study from the JSON document in #data. Text from it enters the page as text only, never as HTML.
 (() => {
-  const page = JSON.parse(document.getElementById("data").textContent);
-  const put = (id, ...nodes) => document.getElementById(id).append(...nodes);
-
   /** A link to a run's report; `href` is a relative path, percent-encoded. */
   const link = (text, href) => element("a", { textContent: text, href: `./${href}` });
 
-  // ---- a figure of the paper with its parts, the paper's statement and the verdict
+  // ---- a numbered figure with its parts, the paper's statement and the verdict
 
-  function addPaperFigure(figure, parent) {
+  function addNumberedFigure(figure, parent) {
     const group = element("div", { className: "group", id: `group-${figure.id}` });
     parent.append(group);
     const draws = [addFigure(figure, group, page.title)];
@@ -19,8 +16,8 @@
       group.append(row);
       draws.push(...parts.map((part) => addFigure(part, row, page.title, "h4")));
     }
-    group.append(element("div", { className: "paper" },
-      element("p", {}, element("strong", { textContent: "The paper: " }), figure.statement),
+    const said = figure.statement ? [element("p", {}, element("strong", { textContent: "The paper: " }), figure.statement)] : [];
+    if (said.length || figure.checks.length) group.append(element("div", { className: "paper" }, ...said,
       element("ul", { className: "checks" }, ...figure.checks.map((check) => element("li", {},
         element("span", { className: `outcome ${check.outcome.replaceAll(" ", "-")}`, textContent: check.outcome }),
         ` ${check.claim}. ${check.finding}`)))));
@@ -93,24 +90,18 @@
 
   // ---- the page
 
-  document.title = `${page.title} – sandglass`;
-  put("title", page.title);
-  put("subtitle", page.subtitle);
-  put("summary", ...page.summary.map((text) => element("p", { textContent: text })));
-  put("highlights", ...page.highlights.map(([name, value]) =>
-    element("div", {}, element("dt", { textContent: name }), element("dd", { textContent: value }))));
   put("verdicts", element("table", { className: "data", "aria-label": "Verdicts" },
     element("tbody", {}, ...page.figures.map((figure) => element("tr", {},
       element("th", { scope: "row" }, element("a", { href: `#group-${figure.id}`, textContent: figure.title })),
-      element("td", {}, element("span", { className: `outcome ${figure.verdict.replaceAll(" ", "-")}`, textContent: figure.verdict })))))));
+      element("td", {}, element("span", { className: figure.verdict && `outcome ${figure.verdict.replaceAll(" ", "-")}`, textContent: figure.verdict })))))));
   addPlane(document.getElementById("plane"));
   addPoints(document.getElementById("points"));
   if (page.absent.length) put("absent", tableOf({ columns: ["Run", "Why"], rows: page.absent }, "Runs without data"));
   else put("absent", element("p", { textContent: "None: every run that was found or expected is in this report." }));
 
-  const overview = document.getElementById("overview"), paper = document.getElementById("paper");
+  const [overview, paper, beyond] = ["overview", "paper", "beyond"].map((id) => document.getElementById(id));
   const redraws = [...page.overview.map((figure) => addFigure(figure, overview, page.title)),
-    ...page.figures.map((figure) => addPaperFigure(figure, paper))];
+    ...page.figures.map((figure) => addNumberedFigure(figure, figure.statement ? paper : beyond))];
   const redraw = () => redraws.forEach((draw) => draw());
   redraw();
   redrawOnChange(redraw);

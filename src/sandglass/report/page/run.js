@@ -1,8 +1,6 @@
 "use strict";
 // Fills the page from the JSON document in #data. Text from it enters the page as text only (textContent), never as HTML.
 (() => {
-  const page = JSON.parse(document.getElementById("data").textContent);
-
   // ---- the packing
 
   function addPacking(packing, parent) {
@@ -80,13 +78,6 @@
 
   // ---- the page
 
-  const put = (id, ...nodes) => document.getElementById(id).append(...nodes);
-  document.title = `${page.title} – sandglass`;
-  put("title", page.title);
-  put("subtitle", page.subtitle);
-  put("summary", ...page.summary.map((text) => element("p", { textContent: text })));
-  put("highlights", ...page.highlights.map(([name, value]) =>
-    element("div", {}, element("dt", { textContent: name }), element("dd", { textContent: value }))));
   put("results", tableOf(page.results, "Results"));
   put("parameters", tableOf(page.parameters, "Parameters"));
   put("provenance", tableOf({ columns: ["", ""], rows: page.provenance }, "Provenance"));
