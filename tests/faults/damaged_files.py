@@ -1,6 +1,7 @@
 """Files that rot: a damaged checkpoint is recognised, the one before it is used, and where none is left it is said."""
 
 import json
+import os
 import pathlib
 import resource
 import shutil
@@ -113,6 +114,39 @@ class Damage(program.Case):
         self.assertEqual(code, faults.DONE, text)
         self.assertEqual(json.loads((out / "summary.json").read_text())["state_hash"], self.expected["state_hash"])
         self.assertIn("trajectory.h5 was gone", (out / "run.log").read_text())
+        # A part of it, something else, a pipe: left as it is, for whoever may still want its frames.
+        for name, spoil in (("cut", lambda path: os.truncate(path, path.stat().st_size // 2)),
+                            ("text", lambda path: path.write_text("my notes")),
+                            ("pipe", lambda path: (path.unlink(), os.mkfifo(path)))):
+            out = self.damaged(name)
+            spoil(out / "trajectory.h5")
+            code, text = faults.finish(faults.start(self.config, out))
+            self.assertEqual(code, faults.BAD_INPUT, text)
+            self.assertIn("Move trajectory.h5 away", text)
+
+    def test_pipes_in_place_of_files_keep_nobody_waiting(self):
+        out = self.damaged("pipes")
+        for name in ("run.log", "checkpoint.h5", "observables.h5", "report.html"):
+            (out / name).unlink(missing_ok=True)
+            os.mkfifo(out / name)
+        for name in ("config.toml", "checkpoint.h5", "observables.h5", "summary.json", "trajectory.h5", "report.html"):
+            os.mkfifo(out / f"{name}.partial")
+        self.ends_right(out)
+
+    def test_the_previous_checkpoint_of_a_calibration(self):
+        out = self.folder / "calibrating"
+        running = faults.start(self.config, out, "--set", "output.checkpoint_seconds=0.01")
+        while not (out / "checkpoint.previous.h5").exists():
+            time.sleep(0.005)
+        running.kill()
+        faults.finish(running)
+        if not (out / "start.h5").exists() or (out / "observables.h5").exists():
+            self.skipTest("the calibration was over")
+        (out / "checkpoint.h5").write_bytes(b"nothing")
+        code, text = faults.finish(faults.start(self.config, out))
+        self.assertEqual(code, faults.DONE, text)
+        self.assertEqual(faults.results(out), self.expected)
+        self.assertIn("calibration of the drive from the previous checkpoint", (out / "run.log").read_text())
 
     def test_checkpoint_of_another_run(self):
         out = self.folder / "other"

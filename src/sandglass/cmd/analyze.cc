@@ -67,7 +67,7 @@ int analyze_command(int argc, char** argv) {
   if (!force && std::filesystem::exists(folder / "summary.json", error))
     throw InputError(fmt::format("{} holds results already: give --force to replace them, or another folder with -o",
                                  folder.string()));
-  FrameReader(trajectory, options.frames);  // what cannot be read is refused before a folder is made
+  try_all_frames(trajectory, options.frames);  // what cannot be read is refused before a folder is made
   std::filesystem::create_directories(folder, error);
   if (error) throw InputError(fmt::format("{} cannot be made: {}", folder.string(), error.message()));
   {

@@ -73,6 +73,24 @@ TEST_CASE("nothing is found in an engine that is whole") {
   }
 }
 
+TEST_CASE("a disk at the end of its leash is not astray, however coarse the grid of a large box is") {
+  // The grid counts in L / 2^32: 2e-5 to 5e-2 here. Looked at right before lists expire, disk after disk.
+  for (const double packing_fraction : {1e-7, 1e-10, 1e-14}) {
+    CAPTURE(packing_fraction);
+    RandomSystem system{.particles = 200, .packing_fraction = packing_fraction, .epoch_length = 1e12};
+    FaultInjection run(random_state(system));
+    for (int expired = 0; expired < 300; ++expired) {
+      double next = never;
+      for (std::uint32_t i = 0; i < 200; ++i)
+        if (run.record(i).next == Next::review) next = std::fmin(next, run.record(i).next_time);
+      REQUIRE(next < never);
+      run.engine->run(std::nextafter(next, 0.0));
+      REQUIRE(run.engine->inspect().fault == Fault::none);
+      run.engine->run(next);
+    }
+  }
+}
+
 TEST_CASE("every kind of fault in the tables is found and named") {
   struct Damage {
     Fault expected;

@@ -20,14 +20,14 @@ namespace sandglass {
 namespace {
 
 constexpr std::size_t longest_message = 1 << 16;
-constexpr int has_state = 0, has_message = 2;
-const std::string lost = "lost what the process that reads a start file has read";
+constexpr int succeeded = 0, has_message = 2;
+const std::string lost = "lost what the process that reads a file has read";
 
 /// A file in memory that both processes see, for the State or the message.
 class SharedFile {
  public:
   SharedFile() : descriptor_(memfd_create("sandglass", MFD_CLOEXEC)) {
-    if (descriptor_ < 0) throw RunError("no memory for reading a start file");
+    if (descriptor_ < 0) throw RunError("no memory for reading a file");
   }
   SharedFile(const SharedFile&) = delete;
   SharedFile& operator=(const SharedFile&) = delete;
@@ -59,7 +59,7 @@ void send(const std::filesystem::path& to, const State& state) {
   std::ofstream file(to, std::ios::binary);
   file.write(reinterpret_cast<const char*>(&header), sizeof header);
   file.write(reinterpret_cast<const char*>(rows.data()), static_cast<std::streamsize>(rows.size() * sizeof(Row)));
-  if (!file.flush()) throw RunError("no memory for reading a start file");
+  if (!file.flush()) throw RunError("no memory for reading a file");
 }
 
 State receive(const std::filesystem::path& from) {
@@ -106,11 +106,11 @@ void limit_resources(std::size_t file_bytes) {
   limit(RLIMIT_DATA, data_pages() * static_cast<std::size_t>(getpagesize()) + 1024 * megabyte + 16 * file_bytes);
 }
 
-int read_in_child(const std::filesystem::path& result, const std::function<State()>& read) {
+int read_in_child(const std::filesystem::path& result, const std::function<void()>& read) {
   std::string message;
   try {
-    send(result, read());
-    return has_state;
+    read();
+    return succeeded;
   } catch (const InputError& error) {
     message = error.what();
   } catch (const std::exception&) {
@@ -123,30 +123,41 @@ int read_in_child(const std::filesystem::path& result, const std::function<State
 int wait_for(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) throw RunError("lost the process that reads a start file");
+    if (errno != EINTR) throw RunError("lost the process that reads a file");
   }
   return status;
+}
+
+/// Calls `read` in a child, which may write to `result` what it has read. Throws InputError unless it comes to its end.
+void call_apart(const std::filesystem::path& path, const std::filesystem::path& result,
+                const std::function<void()>& read) {
+  std::error_code error;
+  const std::size_t file_bytes = std::filesystem::file_size(path, error);
+  const pid_t child = fork();
+  if (child < 0) throw RunError("cannot start a process to read a file: too many processes, or no memory");
+  if (child == 0) {
+    limit_resources(error ? 0 : file_bytes);
+    _exit(read_in_child(result, read));
+  }
+  const int status = wait_for(child);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == succeeded) return;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == has_message) throw InputError(read_whole(result, longest_message));
+  throw InputError(
+      fmt::format("{} is damaged: the HDF5 library {} on reading it; use another copy", path.string(),
+                  WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU ? "did not come to an end" : "failed"));
 }
 
 }  // namespace
 
 State read_apart(const std::filesystem::path& path, const std::function<State()>& read) {
   const SharedFile shared;
-  std::error_code error;
-  const std::size_t file_bytes = std::filesystem::file_size(path, error);
-  const pid_t child = fork();
-  if (child < 0) throw RunError("cannot start a process to read a start file: too many processes, or no memory");
-  if (child == 0) {
-    limit_resources(error ? 0 : file_bytes);
-    _exit(read_in_child(shared.path(), read));
-  }
-  const int status = wait_for(child);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == has_state) return receive(shared.path());
-  if (WIFEXITED(status) && WEXITSTATUS(status) == has_message)
-    throw InputError(read_whole(shared.path(), longest_message));
-  throw InputError(
-      fmt::format("{} is damaged: the HDF5 library {} on reading it; use another copy", path.string(),
-                  WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU ? "did not come to an end" : "failed"));
+  call_apart(path, shared.path(), [&] { send(shared.path(), read()); });
+  return receive(shared.path());
+}
+
+void try_apart(const std::filesystem::path& path, const std::function<void()>& read) {
+  const SharedFile shared;
+  call_apart(path, shared.path(), read);
 }
 
 }  // namespace sandglass

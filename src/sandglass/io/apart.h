@@ -14,4 +14,8 @@ namespace sandglass {
 /// InputError with the message of the one that `read` threw, or if the child died.
 State read_apart(const std::filesystem::path& path, const std::function<State()>& read);
 
+/// The same for what is too much to be handed over: `read` is called in such a child and forgets what it reads. Where
+/// it has come to its end there, reading the same bytes here is safe. Throws InputError in the same way.
+void try_apart(const std::filesystem::path& path, const std::function<void()>& read);
+
 }  // namespace sandglass

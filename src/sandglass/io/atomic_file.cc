@@ -64,12 +64,13 @@ class Descriptor {
 
 }  // namespace
 
-void sync_file(const std::filesystem::path& path) { Descriptor(path, O_RDONLY | O_CLOEXEC).sync(); }
+void sync_file(const std::filesystem::path& path) { Descriptor(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC).sync(); }
 
 void replace_file(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write,
                   const std::function<void()>& before_rename) {
   const std::filesystem::path temporary = path.string() + ".partial";
   std::error_code error;
+  std::filesystem::remove(temporary, error);  // of a run that was killed, or a pipe, which would keep us waiting
   try {
     write(temporary);
     sync_file(temporary);

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 #include <sys/mount.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "sandglass/core/errors.h"
@@ -29,6 +30,25 @@ TEST_CASE("a file is replaced whole, and no temporary is left") {
   CHECK_THROWS_AS(replace_file(path, fail), RunError);
   CHECK(slurp(path) == std::string("two\0three", 9));
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
+}
+
+TEST_CASE("whatever stands in the place of the temporary is no obstacle, and a pipe there keeps nobody waiting") {
+  const TemporaryFolder folder;
+  const auto path = folder / "a.txt", temporary = folder / "a.txt.partial";
+  REQUIRE(::mkfifo(temporary.c_str(), 0600) == 0);
+  write_whole(path, "one");
+  CHECK(slurp(path) == "one");
+  spill(folder / "elsewhere", "mine");
+  std::filesystem::create_symlink(folder / "elsewhere", temporary);
+  write_whole(path, "two");
+  CHECK(slurp(path) == "two");
+  CHECK(std::filesystem::is_regular_file(std::filesystem::symlink_status(path)));
+  CHECK(slurp(folder / "elsewhere") == "mine");
+  REQUIRE(::mkfifo(temporary.c_str(), 0600) == 0);
+  write_state(path, sample_state(2));
+  CHECK(read_state(path).size() == 2);
+  REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
+  CHECK_NOTHROW(sync_file(folder / "pipe"));
 }
 
 TEST_CASE("folders that cannot be written are bad input") {

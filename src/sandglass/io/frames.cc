@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "sandglass/core/errors.h"
+#include "sandglass/io/apart.h"
 #include "sandglass/io/h5md.h"
 #include "sandglass/io/lammps.h"
 #include "sandglass/io/xyz.h"
@@ -175,11 +176,15 @@ void FrameReader::unwrap(const RawFrame& raw, std::vector<double> RawFrame::*coo
   }
 }
 
-void read_all_frames(const std::filesystem::path& path) {
-  FrameReader reader(path, {.radii = {1, 1.43}, .timestep = 1});
+void read_all_frames(const std::filesystem::path& path, const FrameOptions& options) {
+  FrameReader reader(path, options);
   Frame frame;
   while (reader.next(frame)) {
   }
+}
+
+void try_all_frames(const std::filesystem::path& path, const FrameOptions& options) {
+  try_apart(path, [&] { read_all_frames(path, options); });
 }
 
 }  // namespace sandglass

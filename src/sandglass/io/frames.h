@@ -80,7 +80,10 @@ class FrameReader {
   std::vector<std::string> decisions_;
 };
 
-/// Reads a trajectory to its end and forgets it: what a fuzzer calls. Throws InputError.
-void read_all_frames(const std::filesystem::path& path);
+/// Reads a trajectory to its end and forgets it. Throws InputError.
+void read_all_frames(const std::filesystem::path& path, const FrameOptions& options);
+
+/// The same in a process of its own (io/apart.h): what passes here can be given to a FrameReader. Throws InputError.
+void try_all_frames(const std::filesystem::path& path, const FrameOptions& options);
 
 }  // namespace sandglass

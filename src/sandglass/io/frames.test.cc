@@ -110,7 +110,7 @@ TEST_CASE("whatever is done to a file, it is read or refused") {
     }
     spill(folder / "m", text);
     try {
-      read_all_frames(folder / "m");
+      read_all_frames(folder / "m", {.radii = {1, 1.43}, .timestep = 1});
     } catch (const InputError&) {
     }
   }));

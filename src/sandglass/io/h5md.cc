@@ -7,7 +7,9 @@
 
 #include "sandglass/core/errors.h"
 #include "sandglass/io/hdf5.h"
+#include "sandglass/io/seal.h"
 #include "sandglass/io/state_check.h"
+#include "sandglass/io/trajectory.h"
 
 namespace sandglass {
 namespace {
@@ -36,6 +38,7 @@ class H5mdFile {
     images_ = file_.has(all + "image/value");
     times_ = moments<double>("time");
     steps_ = moments<std::int64_t>("step");
+    if (file_.has(frame_checksums)) checksums_ = file_.read<std::uint64_t>(frame_checksums, {shape_[0]});
   }
 
   bool next(RawFrame& frame) {
@@ -46,9 +49,14 @@ class H5mdFile {
       if (!std::isfinite(times_[next_])) refuse(fmt::format("the time of frame {} is not a number", next_));
       frame.time = times_[next_], frame.has_time = true;
     }
-    read_plane("position", frame.x, frame.y);
-    if (velocities_) read_plane("velocity", frame.vx, frame.vy);
-    if (images_) read_plane("image", frame.image_x, frame.image_y);
+    Checksum checksum;
+    read_plane("position", frame.x, frame.y, checksum);
+    if (velocities_) read_plane("velocity", frame.vx, frame.vy, checksum);
+    if (images_) read_plane("image", frame.image_x, frame.image_y, checksum);
+    checksum.add(frame.time);
+    checksum.add(frame.step);
+    if (!checksums_.empty() && checksum.value() != checksums_[next_])
+      refuse(fmt::format("frame {} is damaged: its checksum is wrong", next_));
     ++next_;
     return true;
   }
@@ -94,11 +102,12 @@ class H5mdFile {
   }
 
   template <class T>
-  void read_plane(const std::string& name, std::vector<T>& x, std::vector<T>& y) const {
+  void read_plane(const std::string& name, std::vector<T>& x, std::vector<T>& y, Checksum& checksum) const {
     const std::string object = all + name + "/value";
     const Shape shape = file_.shape(object);
     if (shape.size() != 3 || (shape[2] != 2 && shape[2] != 3)) refuse(name + " must be [frame, disk, 2 or 3]");
     const auto values = file_.read_row<T>(object, next_, {shape_[1], shape[2]});
+    checksum.add_all<T>(values);
     for (std::size_t id = 0; id < shape_[1]; ++id) {
       if (!std::isfinite(static_cast<double>(values[shape[2] * id] + values[shape[2] * id + 1])))
         refuse(fmt::format("frame {}: the {} of disk {} is not a number", next_, name, id));
@@ -113,6 +122,7 @@ class H5mdFile {
   bool velocities_ = false, images_ = false;
   std::vector<double> times_;
   std::vector<std::int64_t> steps_;
+  std::vector<std::uint64_t> checksums_;
   std::size_t next_ = 0;
 };
 

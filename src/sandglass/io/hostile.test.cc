@@ -21,18 +21,20 @@ namespace {
 constexpr std::size_t disks = 6;
 const std::string all = "/particles/all/";
 
+void edit(const std::filesystem::path& path, const std::function<void(hid_t)>& change) {
+  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, hdf5::make_access()), H5Fclose);
+  REQUIRE(file >= 0);
+  change(file);
+}
+
+/// As other programs write them: without checksums of the frames, so that what is wrong is found for what it is.
 void write_good_trajectory(const std::filesystem::path& path) {
   const State state = sample_state(disks);
   Frame frame;
   make_frame(state, frame);
   create_trajectory(path, state, 2);
   write_frame(path, 0, 1, frame, state.box_length);
-}
-
-void edit(const std::filesystem::path& path, const std::function<void(hid_t)>& change) {
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, hdf5::make_access()), H5Fclose);
-  REQUIRE(file >= 0);
-  change(file);
+  edit(path, [](hid_t file) { REQUIRE(H5Ldelete(file, frame_checksums, H5P_DEFAULT) >= 0); });
 }
 
 /// Why a trajectory is refused after `change`; empty if it is not. (Read in this process, where a fault would be seen.)

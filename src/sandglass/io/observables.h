@@ -9,8 +9,8 @@
 namespace sandglass {
 
 /// Writes every dataset at its path, groups made on the way, each with an attribute `unit` and those it has of its
-/// own; the file is replaced whole or not at all. Throws RunError; std::logic_error when a shape does not fit its
-/// values.
+/// own; the file is sealed by a checksum and replaced whole or not at all. Throws RunError; std::logic_error when a
+/// shape does not fit its values.
 void write_observables(const std::filesystem::path& path, const std::vector<Dataset>& datasets);
 
 }  // namespace sandglass

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -16,15 +15,11 @@ namespace {
 
 constexpr std::string_view name = "sandglass seal";
 
-/// Two multiplications a word, each step a bijection of the sum so far: no single change goes unseen.
-std::uint64_t mix(std::uint64_t sum, std::uint64_t word) {
-  return std::rotl((sum ^ (word * 0x9e3779b97f4a7c15u)) * 0xd6e8feb86659fd93u, 31);
-}
-
 /// The seal that belongs to what follows the first block.
 std::string compute_seal(std::ifstream& file) {
   std::vector<char> block(1 << 16);
-  std::uint64_t sum = 0, length = 0;
+  Checksum checksum;
+  std::uint64_t length = 0;
   file.seekg(seal_size);
   while (file) {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
@@ -34,10 +29,11 @@ std::string compute_seal(std::ifstream& file) {
     for (std::size_t at = 0; at < got; at += sizeof(std::uint64_t)) {
       std::uint64_t word = 0;
       std::memcpy(&word, block.data() + at, sizeof word);
-      sum = mix(sum, word);
+      checksum.add(word);
     }
   }
-  std::string seal = fmt::format("{} 1: {} bytes, checksum {:016x}\n", name, length, mix(sum, length));
+  checksum.add(length);
+  std::string seal = fmt::format("{} 1: {} bytes, checksum {:016x}\n", name, length, checksum.value());
   seal.resize(seal_size, '\0');
   return seal;
 }

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "sandglass/core/errors.h"
+#include "sandglass/io/apart.h"
 #include "sandglass/io/atomic_file.h"
 #include "sandglass/io/hdf5.h"
+#include "sandglass/io/seal.h"
 #include "sandglass/io/state_check.h"
 
 namespace sandglass {
@@ -95,6 +97,7 @@ void create_trajectory(const std::filesystem::path& path, const State& state, st
     reserve_frames<double>(file, "position", frames, state.size(), "R_s");
     reserve_frames<std::int32_t>(file, "image", frames, state.size(), "");
     reserve_frames<double>(file, "velocity", frames, state.size(), "(energy / m_s)^(1/2)");
+    file.reserve<std::uint64_t>(frame_checksums, {frames}, 0);
     file.close();
   });
 }
@@ -109,14 +112,36 @@ void write_frame(const std::filesystem::path& path, std::uint64_t index, std::in
     image.insert(image.end(), {x.image, y.image});
     velocity.insert(velocity.end(), {frame.vx[id], frame.vy[id]});
   }
+  Checksum checksum;
+  checksum.add_all<double>(position);
+  checksum.add_all<double>(velocity);
+  checksum.add_all<std::int32_t>(image);
+  checksum.add(frame.time);
+  checksum.add(step);
   Hdf5File file = Hdf5File::open_to_write(path);
   file.write_row<double>(all + "position/value", index, position);
   file.write_row<std::int32_t>(all + "image/value", index, image);
   file.write_row<double>(all + "velocity/value", index, velocity);
   file.write_row<double>(all + "position/time", index, std::array{frame.time});
+  file.write_row<std::uint64_t>(frame_checksums, index, std::array{checksum.value()});
   // The step comes last: where it is set, the frame is complete.
   file.write_row<std::int64_t>(all + "position/step", index, std::array{step});
   file.close();
+}
+
+void check_trajectory(const std::filesystem::path& path, std::size_t disks, std::uint64_t frames) {
+  try_apart(path, [&] {
+    const Hdf5File file = Hdf5File::open(path);
+    const auto require = [&](const std::string& object, const Shape& shape) {
+      if (file.shape(object) != shape)
+        throw InputError(fmt::format("{}, {}: its shape is not that of this run", path.string(), object));
+    };
+    for (const char* name : {"position/value", "image/value", "velocity/value"})
+      require(all + name, {frames, disks, 2});
+    (void)file.read<std::int64_t>(all + "position/step", {frames});
+    (void)file.read<double>(all + "position/time", {frames});
+    (void)file.read<std::uint64_t>(frame_checksums, {frames});
+  });
 }
 
 namespace {
@@ -175,6 +200,17 @@ State read_last_frame(const std::filesystem::path& path) {
   const auto position = file.read_row<double>(all + "position/value", frame, plane);
   const auto image = file.read_row<std::int32_t>(all + "image/value", frame, plane);
   const auto velocity = file.read_row<double>(all + "velocity/value", frame, plane);
+  if (file.has(frame_checksums)) {
+    Checksum checksum;
+    checksum.add_all<double>(position);
+    checksum.add_all<double>(velocity);
+    checksum.add_all<std::int32_t>(image);
+    checksum.add(file.read_row<double>(all + "position/time", frame, {})[0]);
+    checksum.add(file.read_row<std::int64_t>(all + "position/step", frame, {})[0]);
+    if (checksum.value() != file.read_row<std::uint64_t>(frame_checksums, frame, {})[0])
+      throw InputError(
+          fmt::format("{}: frame {} is damaged: its checksum is wrong; use another copy", path.string(), frame));
+  }
   state.disks.resize(shape[0]);
   for (std::size_t id = 0; id < shape[0]; ++id) {
     Disk& disk = state.disks[id];

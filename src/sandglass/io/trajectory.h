@@ -20,6 +20,14 @@ void create_trajectory(const std::filesystem::path& path, const State& state, st
 void write_frame(const std::filesystem::path& path, std::uint64_t index, std::int64_t step, const Frame& frame,
                  double box_length);
 
+/// Refuses a file into whose places frames of this run cannot be written. It is looked at in a process of its own
+/// (io/apart.h). Throws InputError.
+void check_trajectory(const std::filesystem::path& path, std::size_t disks, std::uint64_t frames);
+
+/// What stands beside a frame, at its index in `frame_checksums`, so that damage is known when it is read: over
+/// positions, velocities and image counts as they are stored, time and step.
+inline constexpr const char* frame_checksums = "/parameters/frame_checksum";
+
 /// The last complete frame as a State at time 0: box, mixture, disks; everything else has its defaults. Throws
 /// InputError.
 State read_last_frame(const std::filesystem::path& path);

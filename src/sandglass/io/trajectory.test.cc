@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <rapidcheck.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <optional>
 
 #include "sandglass/core/errors.h"
+#include "sandglass/io/frames.h"
 #include "sandglass/io/hdf5.h"
 #include "sandglass/io/sample_state.h"
 #include "sandglass/io/state_file.h"
@@ -54,6 +56,60 @@ TEST_CASE("a wrapped coordinate is in [0, L) and means the same place") {
     // Quotient, product and difference are each rounded once: within 4 units of rounding of |x|.
     RC_ASSERT(std::fabs(w.position + w.image * box - x) <= 4 * 0x1p-53 * (std::fabs(x) + box));
   }));
+}
+
+TEST_CASE("a bit that has flipped in a frame is found by whoever reads it") {
+  const TemporaryFolder folder;
+  const auto path = folder / "trajectory.h5";
+  const State state = sample_state(disks);
+  create_trajectory(path, state, 3);
+  for (std::uint64_t i = 0; i < 2; ++i)
+    write_frame(path, i, static_cast<std::int64_t>(7 * i), sample_frame(0.01 * static_cast<double>(i)),
+                state.box_length);
+  CHECK(message_of<InputError>([&] { read_all_frames(path, {}); }).empty());
+  for (const char* name : {"position/value", "velocity/value", "image/value", "position/time", "position/step"}) {
+    CAPTURE(name);
+    const auto spoilt = folder / "spoilt.h5";
+    std::filesystem::copy_file(path, spoilt, std::filesystem::copy_options::overwrite_existing);
+    const auto object = std::string("/particles/all/") + name;
+    const auto flip_last_bit = [&]<class T>(T) {
+      Hdf5File file = Hdf5File::open_to_write(spoilt);
+      Shape row = file.shape(object);
+      row.erase(row.begin());
+      std::vector<T> values = file.read_row<T>(object, 1, row);
+      if constexpr (std::is_same_v<T, double>)
+        values[0] = std::nextafter(values[0], 1e9);
+      else
+        values[0] ^= 1;
+      file.write_row<T>(object, 1, values);
+      file.close();
+    };
+    if (object.ends_with("image/value"))
+      flip_last_bit(std::int32_t{});
+    else if (object.ends_with("step"))
+      flip_last_bit(std::int64_t{});
+    else
+      flip_last_bit(double{});
+    CHECK(message_of<InputError>([&] { read_all_frames(spoilt, {}); }).find("frame 1 is damaged") != std::string::npos);
+    CHECK(message_of<InputError>([&] { (void)read_start_file(spoilt); }).find("frame 1 is damaged") !=
+          std::string::npos);
+  }
+}
+
+TEST_CASE("frames are not written into a file that is not the trajectory of this run") {
+  const TemporaryFolder folder;
+  const auto path = folder / "trajectory.h5";
+  create_trajectory(path, sample_state(disks), 3);
+  CHECK(message_of<InputError>([&] { check_trajectory(path, disks, 3); }).empty());
+  CHECK_THROWS_AS(check_trajectory(path, disks, 4), InputError);
+  CHECK_THROWS_AS(check_trajectory(path, disks + 1, 3), InputError);
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+  CHECK_THROWS_AS(check_trajectory(path, disks, 3), InputError);
+  spill(path, "no HDF5");
+  CHECK_THROWS_AS(check_trajectory(path, disks, 3), InputError);
+  std::filesystem::remove(path);
+  REQUIRE(::mkfifo(path.c_str(), 0600) == 0);
+  CHECK_THROWS_AS(check_trajectory(path, disks, 3), InputError);
 }
 
 TEST_CASE("a trajectory with some of its frames is complete and says which") {

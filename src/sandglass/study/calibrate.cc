@@ -97,7 +97,7 @@ bool Calibrator::end_window() {
   if (done()) return true;
   State state = simulation_.state();
   change_drive(state, result_.frequency, result_.amplitude);
-  resume_from(std::move(state));
+  simulation_ = Simulation(std::move(state), {.threads = goal_.threads});
   return true;
 }
 
@@ -122,6 +122,18 @@ std::vector<Field> Calibrator::fields() {
                                                        {"done", &done_}})
     fields.push_back(own);
   return fields;
+}
+
+bool Calibrator::valid() const {
+  const auto number = [](double value) { return std::isfinite(value) && value >= 0; };
+  const bool counted = done_ <= 1 && window_ <= rough_windows + most_windows && beats_in_window_ <= beats_of_window() &&
+                       beats_in_window_ <= beats_ && collisions_before_ <= simulation_.tally().collisions() &&
+                       frequencies_.count == amplitudes_.count && amplitudes_.count <= window_;
+  const double time = static_cast<double>(beats_) * goal_.beat;
+  return counted && std::fabs(simulation_.time() - time) <= 1e-9 * time && result_.frequency > 0 &&
+         result_.amplitude > 0 && number(result_.frequency) && number(result_.amplitude) && number(temperature_sum_) &&
+         number(frequencies_.sum) && number(frequencies_.squares) && number(amplitudes_.sum) &&
+         number(amplitudes_.squares);
 }
 
 Calibration calibrate(State start, const CalibrationGoal& goal, const Progress& progress) {

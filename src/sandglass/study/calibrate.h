@@ -44,7 +44,7 @@ struct Calibration {
 /// known as well as wanted. A window is as long as a gas would need for sqrt(2) times that: var(T mean) = T^2 2 tau /
 /// (N W), tau = 4 / (3 (1 - eps^2)) the relaxation of T in collisions per disk; T of dense and strongly dissipative
 /// fluids is correlated for longer. Acts at beats only, in a fixed order: same bits always, also when it is stopped
-/// after any beat and a new Calibrator, made alike, is given fields and state of the old one.
+/// after any beat and a new Calibrator is made of the state of the old one and given its fields.
 class Calibrator {
  public:
   Calibrator(State start, const CalibrationGoal& goal);
@@ -59,7 +59,7 @@ class Calibrator {
 
   [[nodiscard]] Simulation& simulation() { return simulation_; }  ///< the copy that is run
   [[nodiscard]] std::vector<Field> fields();
-  void resume_from(State scratch) { simulation_ = Simulation(std::move(scratch), {.threads = goal_.threads}); }
+  [[nodiscard]] bool valid() const;  ///< whether the place can be (after fields() were restored)
 
  private:
   /// Mean and its standard error of the results of a few windows, in the order in which they came.

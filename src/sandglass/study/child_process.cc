@@ -39,7 +39,7 @@ pid_t start_process(const std::string& program, const std::vector<std::string>& 
   std::vector<char*> words;
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
-  const int output = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  const int output = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0666);
   if (output < 0) fail_to_write(log, errno);
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();

@@ -39,6 +39,10 @@ class FrameWriter {
   void sync() const {
     if (written_ > 0) sync_file(path_);
   }
+  /// After fields() were restored: whether the next frame is still to come at time `now`.
+  [[nodiscard]] bool valid(double now) const {
+    return written_ <= frames_ && (plan_ || written_ == 0) && next_sample() >= now * (1 - 1e-9);
+  }
   [[nodiscard]] std::vector<Field> fields() { return {{"written", &written_}}; }
   [[nodiscard]] std::vector<Dataset> results() const { return {}; }
 

@@ -1,5 +1,6 @@
 #include "sandglass/study/measurement.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -111,8 +112,16 @@ void Measurement::store_boundaries() {
   }
 }
 
-void Measurement::finish_restore() {
-  if (!timeseries_.valid() || (begun() && !(correlator_->valid() && averages_->valid() && structure_->valid())))
+double Measurement::next_sample() const {
+  double next = timeseries_.next_sample();
+  if (begun()) next = std::min({next, correlator_->next_sample(), averages_->next_sample(), structure_->next_sample()});
+  return next;
+}
+
+void Measurement::finish_restore(double now) {
+  const bool placed =
+      timeseries_.valid() && (!begun() || (correlator_->valid() && averages_->valid() && structure_->valid()));
+  if (!placed || !(next_sample() >= now * (1 - 1e-9)))  // what is past was sampled, but for the rounding of its time
     throw InputError("the checkpoint is damaged: it stands at no time of its measurement");
   if (stored_counts_.size() % count_columns != 0 || stored_sums_.size() % sum_columns != 0 ||
       stored_counts_.size() / count_columns != stored_sums_.size() / sum_columns)

@@ -55,12 +55,14 @@ class Measurement {
   /// Then: makes the observers for it, to be filled through fields(). Throws InputError if it is not a plan of
   /// `config`.
   void prepare_restore(bool begun, const Config& config);
-  /// Last: takes the tallies out of their stored form. Throws InputError if the observers stand where none can.
-  void finish_restore();
+  /// Last: takes the tallies out of their stored form. Throws InputError if the observers stand where none can at time
+  /// `now`.
+  void finish_restore(double now);
 
  private:
   void append_flows(std::vector<Dataset>& datasets) const;
   void store_boundaries();
+  [[nodiscard]] double next_sample() const;
 
   Population population_;
   MeasurementPlan plan_;

@@ -31,7 +31,7 @@ MeasurementPlan small_plan(const State& state) {
 /// Restores a checkpoint of a begun measurement as a resumed run does, with one field of it changed to `value` on the
 /// way; what is said against it.
 template <class T>
-std::string complaint(const std::string& group, const std::string& field, T value) {
+std::string complaint(const std::string& group, const std::string& field, T value, double now = 0) {
   const TemporaryFolder folder;
   const auto path = folder / "checkpoint.h5";
   const State state = sample_state(5);
@@ -51,7 +51,7 @@ std::string complaint(const std::string& group, const std::string& field, T valu
     const Checkpoint checkpoint = read_checkpoint(path, {restored.plan_fields()});
     restored.prepare_restore(true, small_config());
     restore_fields(checkpoint, restored.fields());
-    restored.finish_restore();
+    restored.finish_restore(now);
   });
 }
 
@@ -72,6 +72,8 @@ TEST_CASE("a checkpoint that stands where no measurement can is refused before i
   CHECK(complaint<std::uint64_t>("timeseries", "runs", 0) != "");
   CHECK(complaint("tallies", "counts", std::vector<std::uint64_t>(10)) != "");
   CHECK(complaint("tallies", "counts", std::vector<std::uint64_t>()) != "");
+  // At the time of the state, what the time series was to see from t = 0 on is missed.
+  CHECK(complaint<std::uint64_t>("correlator", "interval", 0, sample_state(5).time()) != "");
 }
 
 TEST_CASE("a plan that is not the configured one is refused before anything is allocated for it") {

@@ -4,7 +4,9 @@
 #include <numeric>
 #include <set>
 
+#include "sandglass/io/apart.h"
 #include "sandglass/io/hdf5.h"
+#include "sandglass/io/seal.h"
 
 namespace sandglass {
 namespace {
@@ -85,7 +87,9 @@ const std::vector<Quantity>& quantities() {
   return list;
 }
 
-std::vector<Dataset> read_results(const std::filesystem::path& path) {
+namespace {
+
+std::vector<Dataset> read_datasets(const std::filesystem::path& path) {
   const Hdf5File file = Hdf5File::open(path);
   std::vector<Dataset> results;
   std::set<std::string> seen;
@@ -107,6 +111,16 @@ std::vector<Dataset> read_results(const std::filesystem::path& path) {
   for (const char* species : {"all", "small"})  // a map has no arguments of its own: index times spacing
     read("/structure/structure_factor/" + std::string(species) + "/map");
   return results;
+}
+
+}  // namespace
+
+std::vector<Dataset> read_results(const std::filesystem::path& path) {
+  if (has_seal(path))
+    check_seal(path);
+  else  // of an older version, or touched by another program
+    try_apart(path, [&] { read_datasets(path); });
+  return read_datasets(path);
 }
 
 const Dataset* find_dataset(const std::vector<Dataset>& results, const std::string& path) {

@@ -26,7 +26,7 @@ struct Quantity {
 const std::vector<Quantity>& quantities();
 
 /// The datasets of an observables.h5 that `quantities` names; those that are not in the file are left out. Throws
-/// InputError where the file cannot be read.
+/// InputError where the file cannot be read or its checksum is wrong.
 std::vector<Dataset> read_results(const std::filesystem::path& path);
 
 /// The dataset of that path; null when there is none.

@@ -23,6 +23,7 @@
 #include "sandglass/study/calibrate.h"
 #include "sandglass/study/frame_writer.h"
 #include "sandglass/study/measurement.h"
+#include "sandglass/study/run_place.h"
 #include "sandglass/study/start.h"
 #include "sandglass/study/summarise.h"
 
@@ -62,6 +63,8 @@ class PointRun {
   Summary finish();
 
  private:
+  void restore_measurement(const Checkpoint& checkpoint);
+  void restore_trajectory(const State& state) const;
   void begin_calibrating(State start);
   void calibrate();
   void begin_equilibrating(State start);
@@ -100,17 +103,7 @@ class PointRun {
   RunFacts facts_;
 
   std::uint64_t format_ = checkpoint_format;
-  std::uint64_t calibrating_ = 0;     // 1 while the drive is being calibrated
-  std::uint64_t beats_ = 0;           // done since t = 0
-  std::uint64_t measuring_ = 0;       // 1 once equilibration is over
-  std::uint64_t first_beat_ = 0;      // of the measured stretch
-  std::uint64_t measured_beats_ = 0;  // length of the measured stretch
-  // s at the last two powers of two of beats. The collision rate of the fluid is taken from the earlier mark on: over
-  // the last half to three quarters of equilibration, whatever its length.
-  struct Marks {
-    std::uint64_t early_beats = 0, late_beats = 1;
-    double early_collisions = 0, late_collisions = 0;
-  } marks_;
+  RunPlace place_;
   double earlier_wall_seconds_ = 0, engine_seconds_ = 0;
   Clock::time_point started_ = Clock::now(), last_checkpoint_ = Clock::now();
 };
@@ -151,7 +144,7 @@ void PointRun::begin_calibrating(State start) {
   // Above 0.78 the collision rate ages for long: calibrate an aged copy, or T would drift from the start.
   if (config_.system.packing_fraction > 0.78) goal.settle = config_.run.equilibrate;
   calibrator_.emplace(std::move(start), goal);
-  calibrating_ = 1;
+  place_.calibrating = 1;
 }
 
 void PointRun::calibrate() {
@@ -173,7 +166,7 @@ void PointRun::begin_equilibrating(State start) {
     log(fmt::format("drive calibrated in {} windows: frequency {}, amplitude {}", found.windows, found.frequency,
                     found.amplitude));
     calibrator_.reset();
-    calibrating_ = 0;
+    place_.calibrating = 0;
   }
   if (config_.output.trajectory_frames > 0)
     create_trajectory(folder_.trajectory(), start, config_.output.trajectory_frames);
@@ -193,32 +186,55 @@ void PointRun::resume() {
   check_same_run(config_, read_config_text(checkpoint.config_toml, "the checkpoint", folder_.path()), folder_);
   if (!std::filesystem::exists(folder_.config())) write_whole(folder_.config(), config_to_toml(config_));
   restore_fields(checkpoint, {own_fields()});
+  check_place(place_, checkpoint.state, config_, beat_);
   earlier_wall_seconds_ = facts_.wall_seconds;
-  if (calibrating_ == 1) {
-    begin_calibrating(start_state(monitor_.progress));
+  const char* from = checkpoint.from_previous ? " from the previous checkpoint (the newest was damaged)" : "";
+  if (place_.calibrating == 1) {
+    begin_calibrating(std::move(checkpoint.state));
     restore_fields(checkpoint, {{"calibrator", calibrator_->fields()}});
-    calibrator_->resume_from(std::move(checkpoint.state));
-    log("resumed in the calibration of the drive");
+    if (!calibrator_->valid())
+      throw InputError("the checkpoint is damaged: its calibration is at no possible place; start again with --force");
+    log(fmt::format("resumed in the calibration of the drive{}", from));
     return;
   }
-  measurement_.emplace(checkpoint.state, beat_);
-  frames_.emplace(folder_.trajectory(), config_.output.trajectory_frames, checkpoint.state.box_length);
+  restore_measurement(checkpoint);
+  simulation_.emplace(std::move(checkpoint.state), tuning_);
+  watch_ = Watch(config_.run.self_check);
+  log(fmt::format("resumed at beat {}{}", place_.beats, from));
+}
+
+void PointRun::restore_measurement(const Checkpoint& checkpoint) {
+  const State& state = checkpoint.state;
+  measurement_.emplace(state, beat_);
+  frames_.emplace(folder_.trajectory(), config_.output.trajectory_frames, state.box_length);
   restore_fields(checkpoint, {measurement_->plan_fields()});
-  measurement_->prepare_restore(measuring_ == 1, config_);
+  measurement_->prepare_restore(place_.measuring == 1, config_);
+  if (place_.measuring == 1) check_place(place_, measurement_->plan(), beat_);
   std::vector<FieldGroup> groups = measurement_->fields();
   groups.push_back({"frames", frames_->fields()});
   groups.push_back({"calibration", facts_.calibration.fields()});
   restore_fields(checkpoint, groups);
-  measurement_->finish_restore();
-  if (measuring_ == 1) frames_->begin(measurement_->plan());
-  if (config_.output.trajectory_frames > 0 && !std::filesystem::exists(folder_.trajectory())) {
-    create_trajectory(folder_.trajectory(), checkpoint.state, config_.output.trajectory_frames);
+  measurement_->finish_restore(state.time());
+  if (place_.measuring == 1) frames_->begin(measurement_->plan());
+  if (!frames_->valid(state.time()))
+    throw InputError("the checkpoint is damaged: its frames are not those up to its time; start again with --force");
+  restore_trajectory(state);
+}
+
+void PointRun::restore_trajectory(const State& state) const {
+  const std::uint64_t frames = config_.output.trajectory_frames;
+  if (frames == 0) return;
+  if (!std::filesystem::exists(folder_.trajectory())) {
+    create_trajectory(folder_.trajectory(), state, frames);
     log("trajectory.h5 was gone: made again, without the frames before this point");
+    return;
   }
-  simulation_.emplace(std::move(checkpoint.state), tuning_);
-  watch_ = Watch(config_.run.self_check);
-  log(fmt::format("resumed at beat {}{}", beats_,
-                  checkpoint.from_previous ? " from the previous checkpoint (the newest was damaged)" : ""));
+  try {
+    check_trajectory(folder_.trajectory(), state.size(), frames);
+  } catch (const InputError& error) {
+    throw InputError(
+        fmt::format("{}. Move trajectory.h5 away to go on without the frames before this point", error.what()));
+  }
 }
 
 bool PointRun::go() {
@@ -230,7 +246,7 @@ bool PointRun::go() {
     }
     begin_equilibrating(start_state(monitor_.progress));
   }
-  if (measuring_ == 0) {
+  if (place_.measuring == 0) {
     equilibrate();
     if (stop_requested()) {
       write_checkpoint_now();
@@ -252,16 +268,16 @@ double PointRun::collisions_per_disk() const {
 }
 
 bool PointRun::equilibrated() const {
-  return (counts_collisions() ? collisions_per_disk() : static_cast<double>(beats_)) >= config_.run.equilibrate;
+  return (counts_collisions() ? collisions_per_disk() : static_cast<double>(place_.beats)) >= config_.run.equilibrate;
 }
 
 void PointRun::equilibrate() {
   while (!equilibrated() && !stop_requested()) {
     advance_one_beat();
-    if (beats_ == 2 * marks_.late_beats) {
-      marks_ = {marks_.late_beats, beats_, marks_.late_collisions, collisions_per_disk()};
+    if (place_.beats == 2 * place_.marks.late_beats) {
+      place_.marks = {place_.marks.late_beats, place_.beats, place_.marks.late_collisions, collisions_per_disk()};
     }
-    const double done = counts_collisions() ? collisions_per_disk() : static_cast<double>(beats_);
+    const double done = counts_collisions() ? collisions_per_disk() : static_cast<double>(place_.beats);
     report("equilibrating", done / config_.run.equilibrate);
     checkpoint_now_and_then();
   }
@@ -270,14 +286,14 @@ void PointRun::equilibrate() {
 void PointRun::begin_measuring() {
   double rate = 1 / beat_;
   if (facts_.calibration.windows > 0) rate = facts_.calibration.collision_rate;
-  if (counts_collisions() && marks_.early_beats > 1)
-    rate =
-        (collisions_per_disk() - marks_.early_collisions) / (static_cast<double>(beats_ - marks_.early_beats) * beat_);
+  if (counts_collisions() && place_.marks.early_beats > 1)
+    rate = (collisions_per_disk() - place_.marks.early_collisions) /
+           (static_cast<double>(place_.beats - place_.marks.early_beats) * beat_);
   // The stretch is whole beats, however it is cut into intervals: these change what is measured, not the trajectory.
-  measured_beats_ = static_cast<std::uint64_t>(std::ceil(config_.run.collisions / (rate * beat_)));
-  first_beat_ = beats_;
-  const double start = static_cast<double>(first_beat_) * beat_;
-  const double end = static_cast<double>(first_beat_ + measured_beats_) * beat_;
+  place_.measured_beats = static_cast<std::uint64_t>(std::ceil(config_.run.collisions / (rate * beat_)));
+  place_.first_beat = place_.beats;
+  const double start = static_cast<double>(place_.first_beat) * beat_;
+  const double end = static_cast<double>(place_.first_beat + place_.measured_beats) * beat_;
   const auto intervals = static_cast<double>(config_.run.intervals);
   double interval = (end - start) / intervals;
   while (start + intervals * interval > end) interval = std::nextafter(interval, 0.0);  // no sample after the last beat
@@ -292,29 +308,29 @@ void PointRun::begin_measuring() {
   measurement_->begin(plan, simulation_->tally());
   frames_->begin(plan);
   facts_.start_energy = kinetic_energy(simulation_->state());
-  measuring_ = 1;
+  place_.measuring = 1;
   log(fmt::format("equilibrated after {} collisions per disk; measuring {} beats", collisions_per_disk(),
-                  measured_beats_));
+                  place_.measured_beats));
 }
 
 bool PointRun::measure() {
-  while (beats_ - first_beat_ < measured_beats_) {
+  while (place_.beats - place_.first_beat < place_.measured_beats) {
     if (stop_requested()) {
       write_checkpoint_now();
       return false;
     }
     advance_one_beat();
-    const std::uint64_t done = beats_ - first_beat_;
-    report("measuring", static_cast<double>(done) / static_cast<double>(measured_beats_));
-    if (done < measured_beats_) checkpoint_now_and_then();
+    const std::uint64_t done = place_.beats - place_.first_beat;
+    report("measuring", static_cast<double>(done) / static_cast<double>(place_.measured_beats));
+    if (done < place_.measured_beats) checkpoint_now_and_then();
   }
   return true;
 }
 
 void PointRun::advance_one_beat() {
   const auto start = Clock::now();
-  ++beats_;
-  watched_beat([this] { measurement_->run_until(*simulation_, static_cast<double>(beats_) * beat_, *frames_); });
+  ++place_.beats;
+  watched_beat([this] { measurement_->run_until(*simulation_, static_cast<double>(place_.beats) * beat_, *frames_); });
   engine_seconds_ += seconds_since(start);
 }
 
@@ -345,7 +361,7 @@ void PointRun::report_violation(const Violation& violation) {
   log(report);
   try {
     write_whole(folder_.diagnostic(), fmt::format("{}\n\nsandglass {}, instruction set {}, beat {}, {} events\n\n{}",
-                                                  report, version, Simulation::instruction_set(), beats_,
+                                                  report, version, Simulation::instruction_set(), place_.beats,
                                                   simulation().tally().collisions(), config_to_toml(config_)));
     write_state(folder_.diagnostic_state(), simulation().state());
   } catch (const std::exception& error) {
@@ -384,20 +400,13 @@ void PointRun::write_checkpoint_now() {
 }
 
 FieldGroup PointRun::own_fields() {
-  return {"run",
-          {{"format", &format_},
-           {"calibrating", &calibrating_},
-           {"beats", &beats_},
-           {"measuring", &measuring_},
-           {"first_beat", &first_beat_},
-           {"measured_beats", &measured_beats_},
-           {"early_beats", &marks_.early_beats},
-           {"late_beats", &marks_.late_beats},
-           {"early_collisions", &marks_.early_collisions},
-           {"late_collisions", &marks_.late_collisions},
-           {"start_energy", &facts_.start_energy},
-           {"wall_seconds", &facts_.wall_seconds},
-           {"engine_seconds", &engine_seconds_}}};
+  FieldGroup own{"run", place_.fields()};
+  for (const Field& field : std::initializer_list<Field>{{"format", &format_},
+                                                         {"start_energy", &facts_.start_energy},
+                                                         {"wall_seconds", &facts_.wall_seconds},
+                                                         {"engine_seconds", &engine_seconds_}})
+    own.second.push_back(field);
+  return own;
 }
 
 Summary PointRun::finish() {
@@ -415,6 +424,9 @@ Summary PointRun::finish() {
 }
 
 void PointRun::log(const std::string& line) const {
+  std::error_code error;
+  const auto status = std::filesystem::status(folder_.log(), error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) return;  // a pipe could block us
   std::ofstream file(folder_.log(), std::ios::app);
   file << fmt::format("{:%Y-%m-%d %H:%M:%S} UTC  {}\n", fmt::gmtime(std::time(nullptr)), line);
 }

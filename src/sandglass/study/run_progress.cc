@@ -82,6 +82,7 @@ void ProgressFile::write() const {
   if (progress_.seconds_left) json["seconds_left"] = *progress_.seconds_left;
   const std::filesystem::path temporary = file_.string() + ".partial";
   std::error_code error;
+  std::filesystem::remove(temporary, error);  // a pipe in its place would keep us waiting
   std::ofstream out(temporary, std::ios::binary);
   out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   out.close();
