@@ -23,11 +23,7 @@ Figure velocity_structure(const Study& study) {
       "are T at every k. Right: correlation length of the transverse part, where it stands out of the noise.",
       {"k", "1/Rₛ", true}, {"S_v(k)", "T₀", false});
   constexpr std::array<double, 4> chosen{0.1, 0.4, 0.65, 0.78};
-  Family family = densities_at(study, restitution, Prefer::largest), few = family;
-  std::erase_if(few.points, [&](const StatePoint* p) {
-    return std::none_of(chosen.begin(), chosen.end(), [&](double c) { return same_level(c, p->packing_fraction()); });
-  });
-  if (few.points.size() >= 2) family = few;
+  const Family family = few_of(densities_at(study, restitution, Prefer::largest), chosen);
   for (const auto& [part, line] : {std::pair("transverse", Line::solid), std::pair("longitudinal", Line::dashed)}) {
     add_family(figure, family, {}, part, [&, part = part, line = line](const StatePoint& p) {
       auto curve = plain_curve(p, fmt::format("/structure/velocity/{}", part), "wavenumber", "value", "error");

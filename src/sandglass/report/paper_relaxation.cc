@@ -291,7 +291,7 @@ Figure fast_scattering(const Study& study) {
   const double restitution = shown_restitution(study, 0.9);
   Figure figure = paper_figure(12, fmt::format("Incoherent scattering, k = 3, ε = {:g}", restitution),
                                "Small disks, memory on the length 2π/k = 2.1 Rₛ. Dashed: the Gaussian approximation "
-                               "exp(−k²⟨Δr²⟩/4).",
+                               "exp(−k²⟨Δr²⟩/4), at some densities.",
                                lag_axis, {"S_inc(3, t)", "", false},
                                "Two-step decay for η ≥ 0.78. The Gaussian approximation holds at all times at low "
                                "density, only at short times at the highest.");
@@ -301,7 +301,7 @@ Figure fast_scattering(const Study& study) {
              [](const StatePoint& p) { return small_curve(p, "self_intermediate_scattering", k); });
   Figure gaussians = figure;
   gaussians.curves.clear();
-  add_family(gaussians, family, {}, "", [](const StatePoint& p) {
+  add_family(gaussians, few_of(family, std::array{0.3, 0.72, 0.78, 0.81}), {}, "", [](const StatePoint& p) {
     auto curve = small_curve(p, "gaussian_approximation", k);
     if (curve) {
       curve->name = fmt::format("η = {:g}, Gaussian", p.packing_fraction());

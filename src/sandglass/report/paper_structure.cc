@@ -83,10 +83,17 @@ Figure radial_figure(const Study& study, int number, const std::string& pair, co
                                {"distance r", "Rₛ", false}, {symbol + "(r)", "", false},
                                "The second peak splits near η = 0.55, more strongly for the big disks.");
   const Family family = densities_at(study, restitution, Prefer::largest);
-  add_family(figure, family, structure_densities, "g(r)", [&](const StatePoint& p) -> std::optional<Curve> {
-    const auto curve = radial(p, pair);
-    return curve ? std::optional(between(*curve, 1.5, 12)) : std::nullopt;
-  });
+  const auto part = [&](double from, double to) {
+    return [&pair, from, to](const StatePoint& p) -> std::optional<Curve> {
+      const auto curve = radial(p, pair);
+      return curve ? std::optional(between(*curve, from, to)) : std::nullopt;
+    };
+  };
+  const Family shown = few_of(family, structure_densities);
+  add_family(figure, shown, structure_densities, "g(r)", part(1.5, 12));
+  Figure panel = part_of(figure, "b", "The second peak", figure.x, figure.y);
+  add_family(panel, shown, {}, "g(r)", part(3, 7));
+  if (!panel.curves.empty()) figure.panels = {std::move(panel)};
   figure.checks = {split_check(family, pair)};
   return figure;
 }
@@ -161,19 +168,27 @@ Figure bond_order(const Study& study) {
   if (figure.curves.empty()) figure.missing = "Not measured in these runs: /structure/bond_order.";
   Figure panel = part_of(figure, "b", fmt::format("Correlation of the bond order, ε = {:g}", restitution),
                          {"distance r", "Rₛ", false}, {"g₆(r)", "", false});
-  const Family family = densities_at(study, restitution, Prefer::largest);
-  add_family(panel, family, {}, "g₆(r)", [](const StatePoint& p) {
+  const auto correlation = [](const StatePoint& p) {
     return plain_curve(p, "/structure/bond_order/correlation", "r", "value", "error");
-  });
+  };
+  const Family family = densities_at(study, restitution, Prefer::largest);
+  add_family(panel, few_of(family, std::array{0.3, 0.5, 0.65, 0.72, 0.78, 0.81}), {}, "g₆(r)",
+             [&](const StatePoint& p) -> std::optional<Curve> {
+               const auto curve = correlation(p);
+               return curve ? std::optional(between(*curve, 0, 40)) : std::nullopt;
+             });
   Check check{"No long-range order at η ≥ 0.78: beyond 15 Rₛ |g₆| stays below 0.1", Outcome::not_enough_data,
               "g₆(r) beyond 15 Rₛ was not measured at η ≥ 0.78."};
-  for (const Curve& curve : panel.curves) {
-    const Curve far = between(curve, 15, std::numeric_limits<double>::infinity());
-    if (curve.level < 0.7799 || far.y.empty()) continue;
+  for (const StatePoint* point : family.points) {
+    const auto curve = correlation(*point);
+    const double density = point->packing_fraction();
+    if (!curve || density < 0.7799) continue;
+    const Curve far = between(*curve, 15, std::numeric_limits<double>::infinity());
+    if (far.y.empty()) continue;
     double mean = 0;
     for (const double y : far.y) mean += y / static_cast<double>(far.y.size());
     check.outcome = std::abs(mean) < 0.1 && check.outcome != Outcome::differs ? Outcome::agrees : Outcome::differs;
-    check.finding = fmt::format("The mean of g₆ beyond 15 Rₛ is {} at η = {:g}.", short_number(mean), curve.level);
+    check.finding = fmt::format("The mean of g₆ beyond 15 Rₛ is {} at η = {:g}.", short_number(mean), density);
     if (check.outcome == Outcome::differs) break;
   }
   if (!panel.curves.empty()) figure.panels = {std::move(panel)};
