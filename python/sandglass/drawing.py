@@ -135,6 +135,8 @@ def set_ticks(axes, figure, small):
                 axis.set_minor_formatter(ticker.NullFormatter())
         elif not figure[name]["log"]:
             axis.set_major_locator(ticker.MaxNLocator(4 if small else 6, steps=(1, 2, 2.5, 5, 10)))
+            if name == "y" and hasattr(axes, "top_of_data"):  # above there is room for an inset, not a scale
+                axis.set_major_locator(ticker.FixedLocator([t for t in axis.get_majorticklocs() if t <= axes.top_of_data]))
 
 
 def draw_map(axes, figure):
@@ -212,6 +214,7 @@ def crowding(axes, corner, size):
 def make_room(axes, share):
     """Moves the upper end of the y axis so that the highest `share` of the axes is free."""
     low, high = axes.get_ylim()
+    axes.top_of_data = high
     if axes.get_yscale() == "log":
         axes.set_ylim(low, low * (high / low) ** (1 / (1 - share)))
     else:

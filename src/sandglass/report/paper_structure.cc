@@ -20,9 +20,35 @@ std::optional<Curve> radial(const StatePoint& point, const std::string& pair) {
   return plain_curve(point, "/structure/radial_distribution", "r", pair, pair + "_error");
 }
 
-/// Depth of the dip between the two halves of the second peak: the lower of the highest values on both sides of a
-/// point, minus the value there, at its greatest; the error is that of the difference. The second peak reaches from the
-/// first minimum, behind the contact distance, to two disks with a big one between them in a straight line.
+/// One side of a peak, from its foot to its top, where it is split or begins to be: between two steeper parts of the
+/// climb its slope sinks below half of the less steep one (below zero in a dip). The greatest such difference, in
+/// slopes over `reach` to both sides.
+Measured shoulder(const Curve& climb) {
+  constexpr double reach = 0.2;
+  std::vector<Measured> slope;
+  const std::size_t n = climb.x.size();
+  if (n < 3) return {};
+  const double bin = std::abs(climb.x[1] - climb.x[0]);
+  const auto half = static_cast<std::size_t>(std::max(1.0, std::round(reach / bin)));
+  for (std::size_t i = half; i + half < n; ++i) {
+    const double width = std::abs(climb.x[i + half] - climb.x[i - half]);
+    slope.push_back({(climb.y[i + half] - climb.y[i - half]) / width,
+                     std::hypot(climb.error[i + half], climb.error[i - half]) / width});
+  }
+  Measured deepest;
+  const auto flatter = [](const Measured& a, const Measured& b) { return a.value < b.value; };
+  for (auto here = slope.begin(); here < slope.end(); ++here) {
+    if (here == slope.begin() || here + 1 == slope.end()) continue;
+    const Measured before = *std::max_element(slope.begin(), here, flatter),
+                   after = *std::max_element(here + 1, slope.end(), flatter), side = std::min(before, after, flatter);
+    const double depth = side.value / 2 - here->value;
+    if (!(depth <= deepest.value)) deepest = {depth, std::hypot(side.error / 2, here->error)};
+  }
+  return deepest;
+}
+
+/// The second peak reaches from the first minimum, behind the contact distance, to two disks with a big one between
+/// them in a straight line; the shoulder of that side which has the clearer one.
 Measured splitting(const Curve& curve, double contact, double across) {
   const Curve valley = between(curve, 1.2 * contact, 2 * contact);
   const auto lowest = std::min_element(valley.y.begin(), valley.y.end());
@@ -30,20 +56,17 @@ Measured splitting(const Curve& curve, double contact, double across) {
   const double first = valley.x[static_cast<std::size_t>(lowest - valley.y.begin())];
   const Curve peak = between(curve, first, 1.08 * across);
   if (peak.x.size() < 5 || peak.error.empty()) return {};
-  Measured deepest{0, *std::max_element(peak.error.begin(), peak.error.end())};
-  for (std::size_t i = 1; i + 1 < peak.y.size(); ++i) {
-    const auto here = peak.y.begin() + static_cast<std::ptrdiff_t>(i);
-    const auto left = std::max_element(peak.y.begin(), here), right = std::max_element(here + 1, peak.y.end());
-    const auto lower = *left < *right ? left : right;
-    const double depth = *lower - *here;
-    if (depth > deepest.value)
-      deepest = {depth, std::hypot(peak.error[static_cast<std::size_t>(lower - peak.y.begin())], peak.error[i])};
-  }
-  return deepest;
+  const auto highest = std::max_element(peak.y.begin(), peak.y.end());
+  const double top = peak.x[static_cast<std::size_t>(highest - peak.y.begin())];
+  Curve fall = between(peak, top, 2 * across);
+  for (auto* column : {&fall.x, &fall.y, &fall.error}) std::reverse(column->begin(), column->end());
+  const Measured left = shoulder(between(peak, first, top)), right = shoulder(fall);
+  const auto clarity = [](const Measured& m) { return std::isfinite(m.error) ? m.value / m.error : -INFINITY; };
+  return clarity(left) < clarity(right) ? right : left;
 }
 
 Check split_check(const Family& family, const std::string& pair) {
-  Check check{"The second peak is split at η ≥ 0.58 and not at η ≤ 0.52 (a dip of more than five errors)",
+  Check check{"The second peak is split, by a dip or a shoulder, at η ≥ 0.58 and not at η ≤ 0.52",
               Outcome::not_enough_data, "It takes g(r) with errors, in bins below 0.3 Rₛ, on both sides of 0.55."};
   std::string split, whole, unclear;
   bool below = false, above = false, wrong = false;
@@ -52,10 +75,10 @@ Check split_check(const Family& family, const std::string& pair) {
     const double density = point->packing_fraction();
     if (!curve || density < 0.45) continue;
     const double big = point->config.system.size_ratio, contact = pair == "small_small" ? 2 : 2 * big;
-    const Measured dip = splitting(*curve, contact, contact + 2 * big);
-    if (!std::isfinite(dip.error)) continue;
-    const bool is_split = dip.value > significant_extreme * dip.error;
-    if (!is_split && significant_extreme * dip.error > 0.1) {
+    const Measured depth = splitting(*curve, contact, contact + 2 * big);
+    if (!std::isfinite(depth.error)) continue;
+    const bool is_split = depth.value > significant_extreme * depth.error;
+    if (!is_split && significant_extreme * depth.error > 0.2) {
       unclear += fmt::format(" {:g}", density);
       continue;
     }
