@@ -35,8 +35,10 @@ Check cages(const Family& family) {
   for (const StatePoint* point : family.points) {
     const Measured exponent = smallest_exponent(*point);
     if (point->packing_fraction() < 0.6999 || !std::isfinite(exponent.error)) continue;
-    const double error = significant_extreme * exponent.error;
-    std::string& list = exponent.value < 1 - error ? caged : error < 0.1 ? free : unclear;
+    // The smallest of many is low by chance: that it is above 1 says more than that it is below.
+    std::string& list = exponent.value < 1 - significant_extreme * exponent.error ? caged
+                        : exponent.value > 1 + significant_order * exponent.error ? free
+                                                                                  : unclear;
     list += fmt::format(" {} at η = {:g};", with_error(exponent.value, exponent.error), point->packing_fraction());
   }
   if (caged.empty() && free.empty() && unclear.empty()) return check;
