@@ -131,10 +131,12 @@ def set_ticks(axes, figure, small):
                     axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
             else:
                 axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5), numticks=8))
-                axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:.3g}"))
+                axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:.4g}"))
                 axis.set_minor_formatter(ticker.NullFormatter())
         elif not figure[name]["log"]:
             axis.set_major_locator(ticker.MaxNLocator(4 if small else 6, steps=(1, 2, 2.5, 5, 10)))
+            if name == "y" and hasattr(axes, "top_of_data"):  # above there is room for an inset, not a scale
+                axis.set_major_locator(ticker.FixedLocator([t for t in axis.get_majorticklocs() if t <= axes.top_of_data]))
 
 
 def draw_map(axes, figure):
@@ -212,6 +214,7 @@ def crowding(axes, corner, size):
 def make_room(axes, share):
     """Moves the upper end of the y axis so that the highest `share` of the axes is free."""
     low, high = axes.get_ylim()
+    axes.top_of_data = high
     if axes.get_yscale() == "log":
         axes.set_ylim(low, low * (high / low) ** (1 / (1 - share)))
     else:
@@ -219,14 +222,14 @@ def make_room(axes, share):
 
 
 def draw_inset(axes, inset, family_of):
-    size, room = (0.36, 0.31), (0.52, 0.48)  # of the inset, and with its labels
+    size, room = (0.33, 0.28), (0.47, 0.43)  # of the inset, and with its labels
     places = {(1 - room[0], 1 - room[1]): "upper right", (0, 1 - room[1]): "upper left", (1 - room[0], 0): "lower right",
               (0, 0): "lower left"}
     axes.figure.canvas.draw()
     crowded = {corner: crowding(axes, corner, room) for corner in places}
     corner = min(crowded, key=crowded.get)
     if crowded[corner] > 0:
-        make_room(axes, 0.46)
+        make_room(axes, 0.42)
         corner = (1 - room[0], 1 - room[1])
     left = corner[0] + room[0] - size[0] - 0.035
     small = axes.inset_axes([left, corner[1] + room[1] - size[1] - 0.03, *size])

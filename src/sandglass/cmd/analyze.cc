@@ -8,6 +8,7 @@
 #include "sandglass/cmd/commands.h"
 #include "sandglass/cmd/progress_bar.h"
 #include "sandglass/core/errors.h"
+#include "sandglass/report/report.h"
 #include "sandglass/study/analyse.h"
 
 namespace sandglass {
@@ -38,6 +39,13 @@ void add_options(CLI::App& app, AnalysisOptions& options) {
       ->check(CLI::PositiveNumber);
   app.add_option("--bin-width", options.bin_width, "of g(r), in R_s (default: L / 800)")
       ->check(CLI::Range(0.001, 1000.0));
+}
+
+/// The command as it was given.
+std::string command_line(int argc, char** argv) {
+  std::string text = "sandglass analyze";
+  for (int i = 1; i < argc; ++i) text.append(" ").append(argv[i]);
+  return text;
 }
 
 }  // namespace
@@ -72,9 +80,11 @@ int analyze_command(int argc, char** argv) {
   if (error) throw InputError(fmt::format("{} cannot be made: {}", folder.string(), error.message()));
   {
     ProgressBar bar;
-    analyse(trajectory, folder, options, [&](std::string_view stage, double done) { bar.show(stage, done); });
+    const Analysis analysis =
+        analyse(trajectory, folder, options, [&](std::string_view stage, double done) { bar.show(stage, done); });
+    write_analysis_report(folder, analysis.summary, analysis.last, command_line(argc, argv));
   }
-  fmt::print("Results: {}\n", (folder / "summary.json").string());
+  fmt::print("Results: {}\nReport: {}\n", (folder / "summary.json").string(), (folder / "report.html").string());
   return static_cast<int>(ExitCode::done);
 }
 

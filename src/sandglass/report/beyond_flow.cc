@@ -17,29 +17,29 @@ using Outcome = Check::Outcome;
 
 Figure velocity_structure(const Study& study) {
   const double restitution = shown_restitution(study, 0.7);
-  Figure figure = paper_figure(
-      23, fmt::format("Velocity structure factors, ε = {:g}", restitution),
-      "⟨|J_k|²⟩/Σm of the momentum across the wave vector (solid) and along it (dashed); in elastic equilibrium both "
-      "are T at every k. Right: correlation length of the transverse part, where it stands out of the noise.",
-      {"k", "1/Rₛ", true}, {"S_v(k)", "T₀", false});
-  constexpr std::array<double, 4> chosen{0.1, 0.4, 0.65, 0.78};
-  Family family = densities_at(study, restitution, Prefer::largest), few = family;
-  std::erase_if(few.points, [&](const StatePoint* p) {
-    return std::none_of(chosen.begin(), chosen.end(), [&](double c) { return same_level(c, p->packing_fraction()); });
-  });
-  if (few.points.size() >= 2) family = few;
-  for (const auto& [part, line] : {std::pair("transverse", Line::solid), std::pair("longitudinal", Line::dashed)}) {
-    add_family(figure, family, {}, part, [&, part = part, line = line](const StatePoint& p) {
-      auto curve = plain_curve(p, fmt::format("/structure/velocity/{}", part), "wavenumber", "value", "error");
-      if (curve && line == Line::dashed)
-        curve->name = fmt::format("η = {:g}, along", p.packing_fraction()), curve->line = line;
-      return curve;
+  Figure figure = paper_figure(23, fmt::format("Transverse velocity structure factor, ε = {:g}", restitution),
+                               "⟨|J_k|²⟩/Σm of the momentum across the wave vector; then along it, and the correlation "
+                               "length of the first where "
+                               "it stands out of the noise. In elastic equilibrium both are T at every k (dotted).",
+                               {"k", "1/Rₛ", true}, {"S_v(k)", "T₀", false});
+  constexpr std::array<double, 4> chosen{0.1, 0.5, 0.65, 0.78};
+  const Family family = few_of(densities_at(study, restitution, Prefer::largest), chosen);
+  const auto add = [&](Figure& target, const char* part) {
+    add_family(target, family, {}, part, [part](const StatePoint& p) {
+      return plain_curve(p, fmt::format("/structure/velocity/{}", part), "wavenumber", "value", "error");
     });
-  }
-  Figure panel = part_of(figure, "b", "Correlation length", density_axis, {"ξ", "Rₛ", false});
+    if (target.curves.empty()) return;
+    const std::vector<double>& k = target.curves.front().x;
+    target.curves.push_back(guide("T", {k.front(), k.back()}, {1, 1}));
+  };
+  add(figure, "transverse");
+  Figure along = part_of(figure, "b", "Longitudinal", figure.x, figure.y);
+  add(along, "longitudinal");
+  Figure panel = part_of(figure, "c", "Correlation length", density_axis, {"ξ", "Rₛ", false});
   panel.family = restitution_axis;
   panel.curves = against_density(study, [](const StatePoint& p) { return p.number("velocity_correlation_length"); });
-  if (!panel.curves.empty()) figure.panels = {std::move(panel)};
+  for (Figure* part : {&along, &panel})
+    if (!part->curves.empty()) figure.panels.push_back(std::move(*part));
   return figure;
 }
 

@@ -17,16 +17,10 @@ using Outcome = Check::Outcome;
 
 constexpr double caged = 0.6999;  // densities from which the paper sees cages
 
-/// The densities of the family that are shown: six of the grid, or all where the study has few of these.
+/// Few densities, from the fluid to the glass.
 Family shown_densities(const Study& study) {
   constexpr std::array<double, 6> chosen{0.5, 0.65, 0.72, 0.76, 0.79, 0.81};
-  Family family = densities_at(study, shown_restitution(study, 0.9));
-  std::vector<const StatePoint*> few;
-  for (const StatePoint* p : family.points)
-    if (std::any_of(chosen.begin(), chosen.end(), [&](double c) { return same_level(c, p->packing_fraction()); }))
-      few.push_back(p);
-  if (few.size() >= 3) family.points = std::move(few);
-  return family;
+  return few_of(densities_at(study, shown_restitution(study, 0.9)), chosen);
 }
 
 /// One lag of G_s as a curve against r, times `factor`(r); rings with fewer than ten displacements are left out.

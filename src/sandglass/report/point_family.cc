@@ -56,6 +56,15 @@ Family restitutions_at(const Study& study, double density, Prefer prefer) {
   return family_at(study, false, density, prefer);
 }
 
+Family few_of(Family family, std::span<const double> chosen) {
+  std::vector<const StatePoint*> few;
+  for (const StatePoint* point : family.points)
+    if (std::any_of(chosen.begin(), chosen.end(), [&](double c) { return same_level(c, family.level(*point)); }))
+      few.push_back(point);
+  if (few.size() >= 3) family.points = std::move(few);
+  return family;
+}
+
 std::vector<double> restitutions_of(const Study& study) {
   return levels_of(study, [](const StatePoint& p) { return p.restitution(); });
 }

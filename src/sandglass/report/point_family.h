@@ -34,6 +34,9 @@ struct Family {
 Family densities_at(const Study& study, double restitution, Prefer prefer = Prefer::longest);
 Family restitutions_at(const Study& study, double density, Prefer prefer = Prefer::longest);
 
+/// The points of the family at the levels `chosen`, where it has at least three of these; else all.
+Family few_of(Family family, std::span<const double> chosen);
+
 /// Those that occur in the study, ascending.
 std::vector<double> restitutions_of(const Study& study);
 std::vector<double> densities_of(const Study& study);

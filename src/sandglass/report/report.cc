@@ -5,7 +5,6 @@
 #include "sandglass/core/errors.h"
 #include "sandglass/io/atomic_file.h"
 #include "sandglass/io/checkpoint.h"
-#include "sandglass/io/summary.h"
 #include "sandglass/report/run_page.h"
 #include "sandglass/study/results.h"
 
@@ -22,17 +21,30 @@ std::string failure_of(const std::function<void()>& read) {
   }
 }
 
+RunRecord record_of(const Summary& summary, const std::filesystem::path& folder) {
+  RunRecord record;
+  record.summary = summary;
+  record.results_missing = failure_of([&] { record.results = read_results(folder / "observables.h5"); });
+  return record;
+}
+
 }  // namespace
 
 void write_report(const std::filesystem::path& run_folder) {
   constexpr std::size_t longest_config = 1 << 20;
-  RunRecord run;
-  run.summary = read_summary(run_folder / "summary.json");
+  RunRecord run = record_of(read_summary(run_folder / "summary.json"), run_folder);
   failure_of([&] { run.config_toml = read_whole(run_folder / "config.toml", longest_config); });
-  run.results_missing = failure_of([&] { run.results = read_results(run_folder / "observables.h5"); });
   run.packing_missing =
       failure_of([&] { run.packing = packing_of(read_checkpoint(run_folder / "checkpoint.h5", {}).state); });
   write_whole(run_folder / "report.html", page_html(run_page(run)));
+}
+
+void write_analysis_report(const std::filesystem::path& folder, const Summary& summary, const State& last,
+                           const std::string& command) {
+  RunRecord analysis = record_of(summary, folder);
+  analysis.packing = packing_of(last);
+  analysis.command = command;
+  write_whole(folder / "report.html", page_html(analysis_page(analysis)));
 }
 
 }  // namespace sandglass

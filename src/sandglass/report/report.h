@@ -1,7 +1,12 @@
-// The HTML page of one run: figures, numbers and decisions in one file that opens offline.
+// The HTML page of one run, or of an analysed trajectory: figures, numbers and decisions in one file that opens
+// offline.
 #pragma once
 
 #include <filesystem>
+#include <string>
+
+#include "sandglass/core/state.h"
+#include "sandglass/io/summary.h"
 
 namespace sandglass {
 
@@ -10,5 +15,10 @@ namespace sandglass {
 /// summary.json must be there. Throws InputError when it is not, or cannot be read; RunError when the page cannot be
 /// written.
 void write_report(const std::filesystem::path& run_folder);
+
+/// The same page for what was measured on stored frames: `summary`, the datasets in `folder`, and the disks of the
+/// `last` frame. There is no configuration; `command` made the files.
+void write_analysis_report(const std::filesystem::path& folder, const Summary& summary, const State& last,
+                           const std::string& command);
 
 }  // namespace sandglass

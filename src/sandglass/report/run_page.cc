@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <string_view>
 
 #include "sandglass/core/errors.h"
@@ -190,11 +191,49 @@ std::vector<std::pair<std::string, std::string>> highlights(const Summary& s, co
   return list;
 }
 
+/// Rows whose numbers, where unknown, are no less printed: counts and the like that only a run has.
+bool of_a_run(std::string_view row) {
+  return row == "kicks" || row == "kicks without partner" || row == "momentum" || row == "collisions" ||
+         row == "wall time" || row == "speed";
+}
+
+/// What was measured on stored frames, in a sentence.
+std::string describe_frames(const Summary& summary) {
+  std::string text = fmt::format("{} disks in a periodic square fill {:.4g} % of the area", grouped(summary.particles),
+                                 100 * summary.packing_fraction);
+  if (std::isfinite(summary.time))
+    text += fmt::format(". Stored frames were measured over a time of {}", short_number(summary.time));
+  if (std::isfinite(summary.temperature.all))
+    text += fmt::format(", at a temperature of {}", measured(summary, summary.temperature.all, "temperature_all"));
+  return text + ".";
+}
+
+/// Figures, numbers, remarks: what the page of a run and that of an analysis have in common.
+Page page_of_measurements(const RunRecord& record) {
+  Page page;
+  page.figures = run_figures(record.results, record.summary);
+  if (!record.results_missing.empty()) {
+    for (Figure& figure : page.figures) figure.missing = record.results_missing;
+  }
+  page.packing = record.packing;
+  page.packing_missing = record.packing_missing;
+  page.results = results_table(record.summary);
+  page.decisions = record.summary.decisions;
+  page.warnings = record.summary.warnings;
+  page.commands = {record.command};
+  return page;
+}
+
+void add_texts(Page& page, std::initializer_list<std::string> texts) {
+  for (const std::string& text : texts)
+    if (!text.empty()) page.summary.push_back(text);
+}
+
 }  // namespace
 
 Page run_page(const RunRecord& run) {
   const Summary& summary = run.summary;
-  Page page;
+  Page page = page_of_measurements(run);
   std::optional<Config> config;
   try {
     config = read_config_text(run.config_toml, "config.toml", ".");
@@ -206,28 +245,33 @@ Page run_page(const RunRecord& run) {
                            summary.restitution);
   page.subtitle = fmt::format("{} hard disks · {} collisions per disk · seed {}", grouped(summary.particles),
                               short_number(summary.collisions_per_particle), summary.seed);
-  page.figures = run_figures(run.results, summary);
-  if (!run.results_missing.empty()) {
-    for (Figure& figure : page.figures) figure.missing = run.results_missing;
-  }
   const LastScattering last = last_scattering(page.figures);
-  for (std::string text :
-       {describe_system(summary, config), describe_relaxation(summary, last), describe_state(summary)}) {
-    if (!text.empty()) page.summary.push_back(std::move(text));
-  }
+  add_texts(page, {describe_system(summary, config), describe_relaxation(summary, last), describe_state(summary)});
   page.highlights = highlights(summary, last);
-  page.packing = run.packing;
-  page.packing_missing = run.packing_missing;
-  page.results = results_table(summary);
-  page.decisions = summary.decisions;
   page.decisions.push_back(
       "Errors are standard errors over the intervals into which the measured stretch was cut. They are right where an "
       "interval is longer than the relaxation time; where it is not, only independent starts tell the error.");
-  page.warnings = summary.warnings;
   page.config = run.config_toml;
-  page.commands = {"sandglass run config.toml -o again"};
   page.provenance = {
       {"version", summary.version}, {"seed", std::to_string(summary.seed)}, {"state hash", summary.state_hash}};
+  return page;
+}
+
+Page analysis_page(const RunRecord& analysis) {
+  const Summary& summary = analysis.summary;
+  Page page = page_of_measurements(analysis);
+  page.title = fmt::format("Stored frames at packing fraction {:.4g}", summary.packing_fraction);
+  page.subtitle = fmt::format("{} disks · measured by sandglass analyze", grouped(summary.particles));
+  const LastScattering last = last_scattering(page.figures);
+  add_texts(page, {describe_frames(summary), describe_relaxation(summary, last)});
+  page.highlights = highlights(summary, last);
+  std::erase_if(page.highlights,
+                [](const auto& entry) { return entry.second == "unknown" || entry.first == "stationary"; });
+  std::erase_if(page.results.rows, [](const auto& row) { return row[1] == "unknown" || of_a_run(row[0]); });
+  page.decisions.push_back(
+      "Errors are standard errors over the blocks into which the frames were cut. They are right where a block is "
+      "longer than the relaxation time.");
+  page.provenance = {{"version", summary.version}};
   return page;
 }
 

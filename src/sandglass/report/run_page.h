@@ -18,8 +18,12 @@ struct RunRecord {
   std::string results_missing;
   std::optional<Packing> packing;
   std::string packing_missing;
+  std::string command = "sandglass run config.toml -o again";  ///< that makes it again
 };
 
 Page run_page(const RunRecord& run);
+
+/// Of frames that were analysed: what only a run knows is left out.
+Page analysis_page(const RunRecord& analysis);
 
 }  // namespace sandglass

@@ -85,6 +85,12 @@ void show(Observer& observer, Frame& frame, double step) {
   frame.time = time;
 }
 
+/// The disks where `frame` has them.
+State state_at(State disks, const Frame& frame) {
+  for (std::size_t id = 0; id < disks.size(); ++id) disks.disks[id].x = frame.x[id], disks.disks[id].y = frame.y[id];
+  return disks;
+}
+
 bool needs_velocities(const Dataset& dataset) {
   return dataset.path.find("velocity") != std::string::npos || dataset.path.find("temperature") != std::string::npos;
 }
@@ -92,8 +98,8 @@ bool needs_collisions(const Dataset& dataset) { return dataset.path.ends_with("/
 
 }  // namespace
 
-Summary analyse(const std::filesystem::path& trajectory, const std::filesystem::path& folder,
-                const AnalysisOptions& options, const Progress& progress) {
+Analysis analyse(const std::filesystem::path& trajectory, const std::filesystem::path& folder,
+                 const AnalysisOptions& options, const Progress& progress) {
   const Timing timing = timing_of(trajectory, options, progress);
   const MeasurementPlan plan = plan_of(timing, options);
   FrameReader reader(trajectory, options.frames);
@@ -170,7 +176,7 @@ Summary analyse(const std::filesystem::path& trajectory, const std::filesystem::
                     reader.largest_step()));
   write_observables(folder / "observables.h5", datasets);
   write_summary(folder / "summary.json", summary);
-  return summary;
+  return {std::move(summary), state_at(disks, frame)};
 }
 
 }  // namespace sandglass

@@ -85,6 +85,11 @@
     element("ul", {}, ...page.decisions.map((text) => element("li", { textContent: text }))));
   put("commands", page.commands.join("\n"));
   put("config", page.config);
+  if (!page.parameters.rows.length) {  // stored frames have none
+    for (const id of ["parameters-section", "configuration", "cite"]) document.getElementById(id).remove();
+    document.querySelector('nav a[href="#parameters-section"]').remove();
+    document.getElementById("again").textContent = "Made from the stored frames by:";
+  }
 
   const figures = document.getElementById("figures");
   const redraws = page.figures.map((figure) => addFigure(figure, figures, page.title));
