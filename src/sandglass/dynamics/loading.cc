@@ -92,8 +92,8 @@ double IsaEngine::default_skin() const {
   return std::fmin(std::fmax(skin, 0.2 * contact), room);
 }
 
-/// Two disks to a cell, of the five that there is room for in a line of the grid. With threads the cells are smaller, so
-/// that three rows are just two ranges high: lanes are made of whole rows.
+/// Two disks to a cell, of the five that there is room for in a line of the grid. With threads the cells are smaller,
+/// so that three rows are just two ranges high: lanes are made of whole rows.
 double IsaEngine::default_cell_size() const {
   if (tuning_.cell_size > 0) return tuning_.cell_size;
   const double cell = tables_.box.length * std::sqrt(2 / static_cast<double>(tables_.size));
