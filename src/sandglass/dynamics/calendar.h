@@ -68,6 +68,7 @@ class Calendar {
   void clear() {
     for (std::uint32_t& chain : chains_) chain = no_chunks;
     chunks_.clear();
+    nexts_.clear();
     free_ = none;
     fetching_ = no_chunks;
     for (std::size_t i = 0; i < late_count_; ++i) late_times_[i] = nothing;
@@ -132,11 +133,10 @@ class Calendar {
     std::size_t place = 0;
   };
 
-  /// A run of entries of one later window. Packed, and how far it is full stands elsewhere (chains_): appending writes
-  /// to it without waiting for it.
+  /// A run of entries of one later window. Packed; how far it is full, and which chunk was filled before, stand
+  /// elsewhere (chains_, nexts_): appending writes to it, and walking a chain passes it, without waiting for it.
   struct alignas(64) Chunk {
     static constexpr std::uint32_t capacity = 21, entry_bytes = 12;
-    std::uint32_t next;  // the chunk filled before, or none
     unsigned char entries[capacity * entry_bytes];
 
     [[gnu::always_inline]] void write(std::uint32_t i, double time, std::uint32_t slot) {
@@ -234,12 +234,13 @@ class Calendar {
   [[gnu::noinline]] std::uint32_t new_chunk(std::uint32_t next) {
     std::uint32_t chunk = free_;
     if (chunk != none) {
-      free_ = chunks_[chunk].next;
+      free_ = nexts_[chunk];
     } else {
       chunk = static_cast<std::uint32_t>(chunks_.size());
       chunks_.push_back({});
+      nexts_.push_back(none);
     }
-    chunks_[chunk].next = next;
+    nexts_[chunk] = next;
     return chunk;
   }
 
@@ -251,8 +252,8 @@ class Calendar {
     for (std::uint32_t count = count_of(end); current != none; count = Chunk::capacity) {
       for (std::uint32_t i = 0; i < count; ++i)  // visiting may move the chunks
         visit(chunks_[current].time(i), chunks_[current].slot(i));
-      const std::uint32_t next = chunks_[current].next;
-      chunks_[current].next = free_;
+      const std::uint32_t next = nexts_[current];
+      nexts_[current] = free_;
       free_ = current;
       current = next;
     }
@@ -263,8 +264,10 @@ class Calendar {
     const auto place = static_cast<std::size_t>(window_ & ring_mask_);
     if (place == 0) empty_chain(beyond(), [&](double time, std::uint32_t slot) { push(time, slot); });
     std::size_t room = 0;
-    for (std::uint32_t chunk = chunk_of(chains_[place]); chunk != none; chunk = chunks_[chunk].next)
+    for (std::uint32_t chunk = chunk_of(chains_[place]); chunk != none; chunk = nexts_[chunk]) {
       room += Chunk::capacity;
+      for (std::uint32_t line = 0; line < sizeof(Chunk); line += 64) prefetch(&chunks_[chunk].entries[line]);
+    }
     if (room + beyond_end > sorted_.size()) make_room(room + beyond_end);
 
     // Sorted by key first (counting), which leaves few out of order. What counts is chosen without a branch, since that
@@ -306,7 +309,7 @@ class Calendar {
         --fetching_;
         prefetch(&records[chunks_[chunk].slot(count_of(fetching_))]);
       } else {
-        const std::uint32_t next = chunks_[chunk].next;
+        const std::uint32_t next = nexts_[chunk];
         fetching_ = next == none ? no_chunks : next << 5 | Chunk::capacity;
       }
     }
@@ -328,6 +331,7 @@ class Calendar {
   std::uint32_t free_ = none;           // chain of unused chunks
   std::uint32_t fetching_ = no_chunks;  // where fetch_next_window has come to
   GrowingArray<Chunk> chunks_;
+  GrowingArray<std::uint32_t> nexts_;  // by chunk: that filled before it in its chain, or none
 };
 
 }  // namespace SANDGLASS_ISA

@@ -92,11 +92,13 @@ double IsaEngine::default_skin() const {
   return std::fmin(std::fmax(skin, 0.2 * contact), room);
 }
 
-/// Two disks to a cell, of the five that there is room for in a line of the grid.
+/// Two disks to a cell, of the five that there is room for in a line of the grid. With threads the cells are smaller,
+/// so that three rows are just two ranges high: lanes are made of whole rows.
 double IsaEngine::default_cell_size() const {
   if (tuning_.cell_size > 0) return tuning_.cell_size;
   const double cell = tables_.box.length * std::sqrt(2 / static_cast<double>(tables_.size));
-  return cell;
+  const double range = 2 * std::fmax(state_.mixture.radius[small], state_.mixture.radius[big]) + default_skin();
+  return crew ? std::fmin(cell, (1 + 1e-4) * 2 / 3 * range) : cell;
 }
 
 /// A calendar for `size` disks whose next events are `lead` ahead. The more events in a window, the more are entered

@@ -120,10 +120,13 @@ Strip::Foreseen Strip::earliest_of_blocks(std::uint32_t i, Lanes lanes) const {
   const std::uint32_t* list = neighbours_.list(i);
   for (std::uint32_t first = 0;;) {
     if (lanes.soonest < earliest.time) {
-      // One lane, before its own next event, is the rule.
-      if ((lanes.all & (lanes.all - 1)) != 0 || (lanes.all & lanes.strict) == 0) [[unlikely]]
+      // One lane, before its own next event, is the rule. At the time of that event: disks that have chosen each other.
+      if ((lanes.all & (lanes.all - 1)) != 0) [[unlikely]]
         return earliest_contact_by_rule(i);
       earliest = {lanes.soonest, list[static_cast<unsigned>(__builtin_ctz(lanes.all))]};
+      if ((lanes.all & lanes.strict) == 0 && !comes_before_next_of(records_[earliest.partner], earliest.time, i))
+          [[unlikely]]
+        return earliest_contact_by_rule(i);
     } else if (lanes.soonest == earliest.time && earliest.time < never) [[unlikely]] {
       return earliest_contact_by_rule(i);
     }

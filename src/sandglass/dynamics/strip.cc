@@ -4,7 +4,8 @@
 //  3. No disk's next event comes later, in canonical order, than its own kick, its transit or the expiry of its list;
 //     and no contact of a listed pair, as computed from the records as they are now, comes before the next events of
 //     both its disks. So the earliest next event of all, unless it is a review, is the earliest event there is.
-//  4. Every finite next event has an entry in the calendar, a contact one for the pair.
+//  4. Every finite next event has an entry in the calendar, a contact one for the pair, a kick that which it was given
+//     when its clock was set; until the window of a kick opens it has that also while it is not the next event.
 //  5. Two disks that overlap or touch are in each other's lists; lists are symmetric.
 #include "sandglass/dynamics/strip.h"
 
