@@ -85,7 +85,7 @@ int figures_command(int argc, char** argv) {
   const fs::path output = own_place ? fs::path(arguments.output) : fs::path(arguments.folder) / "figures";
   write_figure_data(figures, output);
   print_verdicts(figures);
-  for (const AbsentRun& run : study.absent) fmt::print("Note: no data of {}: {}\n", run.path, run.why);
+  fmt::print("{}", describe_absent(study));
   fmt::print("Figures: {}\n", output.string());
   // A run has a report of its own, which is not overwritten.
   const bool study_of_runs = study.points.size() > 1 || study.points.front().replicas.front().path != ".";

@@ -250,7 +250,7 @@ int collect(const Arguments& arguments) {
   std::size_t runs = 0;
   for (const StatePoint& point : study.points) runs += point.replicas.size();
   fmt::print("{} runs of {} state points collected\n", runs, study.points.size());
-  for (const AbsentRun& run : study.absent) fmt::print("Note: no data of {}: {}\n", run.path, run.why);
+  fmt::print("{}", describe_absent(study));
   const std::filesystem::path folder = arguments.folder;
   fmt::print("Data: {}, {}\nReport: {}\n", (folder / "study.h5").string(), (folder / "csv").string(),
              (folder / "report.html").string());

@@ -253,6 +253,16 @@ Study read_study(const fs::path& folder, const Progress& progress) {
   return study;
 }
 
+std::string describe_absent(const Study& study) {
+  constexpr std::size_t most = 10;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, study.absent.size()); ++i)
+    text += fmt::format("Note: no data of {}: {}\n", study.absent[i].path, study.absent[i].why);
+  if (study.absent.size() > most)
+    text += fmt::format("Note: nor of {} more runs, which report.html names\n", study.absent.size() - most);
+  return text;
+}
+
 Study collect_study(const fs::path& folder, const Progress& progress) {
   Study study = read_study(folder, progress);
   report_progress(progress, "writing", 1);

@@ -51,6 +51,10 @@ struct Study {
 /// Throws InputError when the folder cannot be read, the manifest makes no sense, or no run is under it.
 Study read_study(const std::filesystem::path& folder, const Progress& progress = {});
 
+/// The absent runs for a terminal: a line each, ten of them; the others are counted (csv/runs.csv and the report name
+/// them all).
+std::string describe_absent(const Study& study);
+
 /// Writes `folder`/study.h5 and `folder`/csv/*.csv, each whole or not at all. Throws RunError, InputError.
 void write_study(const Study& study, const std::filesystem::path& folder);
 

@@ -1,5 +1,7 @@
 #include "sandglass/study/collect.h"
 
+#include <algorithm>
+
 #include <doctest/doctest.h>
 
 #include "sandglass/core/errors.h"
@@ -101,6 +103,11 @@ TEST_CASE("what is missing, unfinished or damaged is named and passed over") {
   CHECK(study.absent[2].path == "runs/odd");
   CHECK(study.absent[2].why.find("particles") != std::string::npos);
   CHECK(study.absent[3].why.starts_with("not finished"));
+  CHECK(describe_absent(study).ends_with(": not finished: run --resume goes on\n"));
+  Study many;
+  many.absent.assign(25, {"runs/x", "not started"});
+  CHECK(std::ranges::count(describe_absent(many), '\n') == 11);
+  CHECK(describe_absent(many).find("15 more") != std::string::npos);
 }
 
 TEST_CASE("a start file that is gone since does not matter") {
