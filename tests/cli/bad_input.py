@@ -143,12 +143,16 @@ class StartFile(program.Case):
         with h5py.File(self.start, "r+") as file:
             position = file["particles/all/position/value"]
             position[-1, 5] = position[-1, 9] + [0.5, 0.0]
+        self.refused_start(self.start, saying=["frame 2", "checksum", "/parameters/frame_checksum"])
+        with h5py.File(self.start, "r+") as file:  # the change was meant
+            del file["parameters/frame_checksum"]
         self.refused_start(self.start, saying=["overlap"])
 
     def test_not_a_number(self):
         with h5py.File(self.start, "r+") as file:
             file["particles/all/position/value"][-1, 5] = float("nan")
-        self.refused_start(self.start, saying=[])
+            del file["parameters/frame_checksum"]
+        self.refused_start(self.start, saying=["centre"])
 
     def test_another_size(self):
         self.refused_start(self.start, "system.particles=400", saying=["100", "200", "system.particles"])

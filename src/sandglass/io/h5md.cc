@@ -55,8 +55,7 @@ class H5mdFile {
     if (images_) read_plane("image", frame.image_x, frame.image_y, checksum);
     checksum.add(frame.time);
     checksum.add(frame.step);
-    if (!checksums_.empty() && checksum.value() != checksums_[next_])
-      refuse(fmt::format("frame {} is damaged: its checksum is wrong", next_));
+    if (!checksums_.empty() && checksum.value() != checksums_[next_]) refuse(wrong_checksum(next_));
     ++next_;
     return true;
   }

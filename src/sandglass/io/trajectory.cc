@@ -129,6 +129,13 @@ void write_frame(const std::filesystem::path& path, std::uint64_t index, std::in
   file.close();
 }
 
+std::string wrong_checksum(std::uint64_t frame) {
+  return fmt::format(
+      "frame {} is damaged or was changed: its checksum is wrong; use another copy, or delete {} from the file if the "
+      "change was meant",
+      frame, frame_checksums);
+}
+
 void check_trajectory(const std::filesystem::path& path, std::size_t disks, std::uint64_t frames) {
   try_apart(path, [&] {
     const Hdf5File file = Hdf5File::open(path);
@@ -208,8 +215,7 @@ State read_last_frame(const std::filesystem::path& path) {
     checksum.add(file.read_row<double>(all + "position/time", frame, {})[0]);
     checksum.add(file.read_row<std::int64_t>(all + "position/step", frame, {})[0]);
     if (checksum.value() != file.read_row<std::uint64_t>(frame_checksums, frame, {})[0])
-      throw InputError(
-          fmt::format("{}: frame {} is damaged: its checksum is wrong; use another copy", path.string(), frame));
+      throw InputError(fmt::format("{}: {}", path.string(), wrong_checksum(frame)));
   }
   state.disks.resize(shape[0]);
   for (std::size_t id = 0; id < shape[0]; ++id) {

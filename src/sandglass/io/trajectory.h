@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "sandglass/core/frame.h"
 #include "sandglass/core/state.h"
@@ -27,6 +28,9 @@ void check_trajectory(const std::filesystem::path& path, std::size_t disks, std:
 /// What stands beside a frame, at its index in `frame_checksums`, so that damage is known when it is read: over
 /// positions, velocities and image counts as they are stored, time and step.
 inline constexpr const char* frame_checksums = "/parameters/frame_checksum";
+
+/// What is said where it is wrong.
+std::string wrong_checksum(std::uint64_t frame);
 
 /// The last complete frame as a State at time 0: box, mixture, disks; everything else has its defaults. Throws
 /// InputError.
