@@ -231,7 +231,7 @@ def draw_inset(axes, inset, family_of):
     if crowded[corner] > 0:
         make_room(axes, 0.42)
         corner = (1 - room[0], 1 - room[1])
-    left = corner[0] + room[0] - size[0] - 0.035
+    left = corner[0] + room[0] - size[0] - (0.035 if corner[0] > 0 else 0)  # the ticks of the main axes are on the left
     small = axes.inset_axes([left, corner[1] + room[1] - size[1] - 0.03, *size])
     small.tick_params(labelsize=5.5, pad=1.5, length=2, which="major")
     small.tick_params(length=1, which="minor")
