@@ -102,12 +102,12 @@ class Calendar {
       if (next.time > limit) return no_disk;
       ++head_;
       if (out_of_cache_) {
-        ahead(sorted_[head_ + 20].slot);
-        soon(sorted_[head_ + 10].slot);
+        if (const Entry& later = sorted_[head_ + 20]; later.time < nothing) ahead(later.slot);
+        if (const Entry& later = sorted_[head_ + 10]; later.time < nothing) soon(later.slot);
         fetch_next_window(records);
       } else {  // from one level of the cache to the next
         prefetch(&records[sorted_[head_ + 8].slot]);
-        ahead(sorted_[head_ + 4].slot);
+        if (const Entry& later = sorted_[head_ + 4]; later.time < nothing) ahead(later.slot);
       }
       if (states(records[next.slot], next.time)) [[likely]]
         return next.slot;

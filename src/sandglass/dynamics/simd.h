@@ -68,6 +68,7 @@ inline Smallest smallest_of_8(const double* x) {
 }
 
 /// Transposes eight rows of eight doubles: out[c] holds column c, lane r from rows[list[r]].
+/// (Addresses gathered in an array first are computed in a vector by GCC, and taken out of it one by one.)
 template <class Row>
 inline void load_columns(const Row* rows, const std::uint32_t* list, Vector (&out)[8]) {
   __m512d r[8], t[8];

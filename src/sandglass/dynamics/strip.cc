@@ -217,7 +217,9 @@ void Strip::draw_kicks(std::uint32_t i, double t) {
   add(i, t);
   for (std::size_t n = 0; n < 32 && size < DrawnKicks::size; ++n) {
     const Calendar::Coming entry = calendar_.coming(n);
-    if (entry.time < never && entry.time == cold_[entry.slot].next_kick && entry.slot != i) add(entry.slot, entry.time);
+    if (entry.time == never) break;
+    const Record& disk = records_[entry.slot];
+    if (disk.next == Next::kick && disk.next_time == entry.time && entry.slot != i) add(entry.slot, entry.time);
   }
   drawn.draw(tables_->state.seed);
   for (std::uint32_t n = 0; n < size; ++n)
