@@ -166,7 +166,8 @@ def write_run(folder, eta, eps, seed):
     }
     (folder / "summary.json").write_text(json.dumps(summary))
     (folder / "config.toml").write_text(f"[system]\nparticles = {PARTICLES}\npacking_fraction = {eta}\n"
-                                        f"[collision]\nrestitution = {eps}\n[run]\nseed = {seed}\ncollisions = {length}\n")
+                                        f"[collision]\nrestitution = {eps}\n[run]\nseed = {seed}\ncollisions = {length}\n"
+                                        "[observe]\nselection_time = 1000\n")
     (folder / "report.html").write_text("<!DOCTYPE html><title>a run</title>")
 
 
