@@ -116,15 +116,19 @@ TEST_CASE("a line of equal t is where the curves pass it") {
   CHECK(line.y[1] == doctest::Approx(0.7 * std::pow(2, 1.0 / 18)));
 }
 
-TEST_CASE("a peak counts only where the curve comes down behind it") {
-  const auto with_peak = [](double density, double height, double end) {
+TEST_CASE("a peak counts only where the curve comes down behind it, and disks get away") {
+  const auto with_peak = [](double density, double height, double end, double far = 2) {
     StatePoint p = point(density, 0.9);
-    const std::string group = "/dynamics/small/susceptibility/";
-    const auto put = [&](const char* name, std::vector<double> values) {
-      p.results.push_back({group + name, {values.size()}, values, ""});
+    const auto put = [&](const std::string& quantity, std::vector<double> values) {
+      const std::string group = "/dynamics/small/" + quantity + "/";
+      for (const auto& [name, column] : {std::pair{"time", std::vector<double>{1, 2, 3}},
+                                         {"collisions", {1, 2, 3}},
+                                         {"value", std::move(values)},
+                                         {"error", {0.1, 0.1, 0.1}}})
+        p.results.push_back({group + name, {3}, column, ""});
     };
-    put("time", {1, 2, 3}), put("collisions", {1, 2, 3});
-    put("value", {1, height, end}), put("error", {0.1, 0.1, 0.1});
+    put("susceptibility", {1, height, end});
+    put("mean_square_displacement", {0.1, 0.2, far});
     return p;
   };
   const auto outcome = [](std::vector<StatePoint> points) {
@@ -132,6 +136,7 @@ TEST_CASE("a peak counts only where the curve comes down behind it") {
   };
   CHECK(outcome({with_peak(0.7, 2, 1), with_peak(0.78, 5, 1)}) == Outcome::agrees);
   CHECK(outcome({with_peak(0.7, 5, 1), with_peak(0.78, 2, 1)}) == Outcome::differs);
+  CHECK(outcome({with_peak(0.7, 5, 1), with_peak(0.78, 2, 1, 0.5)}) == Outcome::not_enough_data);  // a rattling one
   CHECK(outcome({with_peak(0.7, 5, 1), with_peak(0.78, 2, 2)}) == Outcome::not_enough_data);
   CHECK(outcome({with_peak(0.5, 5, 1), with_peak(0.6, 2, 1)}) == Outcome::not_enough_data);  // no cages there
 }
