@@ -119,6 +119,7 @@ TEST_CASE("a line of equal t is where the curves pass it") {
 TEST_CASE("a peak counts only where the curve comes down behind it, and disks get away") {
   const auto with_peak = [](double density, double height, double end, double far = 2) {
     StatePoint p = point(density, 0.9);
+    p.results.clear();
     const auto put = [&](const std::string& quantity, std::vector<double> values) {
       const std::string group = "/dynamics/small/" + quantity + "/";
       for (const auto& [name, column] : {std::pair{"time", std::vector<double>{1, 2, 3}},
