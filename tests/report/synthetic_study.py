@@ -75,7 +75,7 @@ def write_run(folder, eta, eps, seed):
     rate, length = collision_rate(eta), 40000.0
     box = np.sqrt(PARTICLES * np.pi * (1 + 1.43**2) / 2 / eta)
     file = File(folder / "observables.h5", generator)
-    t = np.geomspace(2e-2 / rate, 4000 / rate * (1 + 0.002 * seed), 64)  # replicas differ a little in their lags
+    t = np.geomspace(2e-2 / rate, 40000 / rate * (1 + 0.002 * seed), 75)  # replicas differ a little in their lags
     s = rate * t
     axes = {"time": t, "collisions": s}
     for species, mass, size in (("all", 1.5, 0.9), ("small", 1.0, 1.0), ("big", 2.0449, 0.7)):
