@@ -48,7 +48,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     restore_fields(checkpoint, {measurement.plan_fields()});
     measurement.prepare_restore(measuring == 1, small_config());
     restore_fields(checkpoint, measurement.fields());
-    measurement.finish_restore();
+    measurement.finish_restore(checkpoint.state.time());
     (void)measurement.results();
     if (measurement.begun()) (void)measurement.correlator().next_sample();
   });
