@@ -36,10 +36,12 @@ struct PointColumns {
   std::vector<const Key*> keys;
 };
 
+/// What was measured: all numbers but those that say which point it is.
 std::set<std::string> number_names(const Study& study) {
   std::set<std::string> names;
   for (const StatePoint& point : study.points)
     for (const auto& [name, number] : point.numbers) names.insert(name);
+  for (const char* name : {"packing_fraction", "restitution"}) names.erase(name);
   return names;
 }
 
@@ -164,7 +166,6 @@ void write_hdf5(const Study& study, const fs::path& path) {
     column("particles", [](const StatePoint& p) { return static_cast<double>(p.config.system.particles); });
     column("replicas", [](const StatePoint& p) { return static_cast<double>(p.replicas.size()); });
     for (const std::string& name : number_names(study)) {
-      if (name == "packing_fraction" || name == "restitution") continue;
       column(name + "/value", [&](const StatePoint& p) { return p.number(name).value; });
       column(name + "/error", [&](const StatePoint& p) { return p.number(name).error; });
     }
