@@ -3,8 +3,10 @@
 
 #include <cstdint>
 
+#include "sandglass/core/frame.h"
 #include "sandglass/core/random.h"
 #include "sandglass/core/state.h"
+#include "sandglass/observe/population.h"
 
 namespace sandglass {
 
@@ -23,6 +25,19 @@ inline State scattered_disks(std::size_t n, double box_length, std::uint64_t see
     state.disks[id].species = id % 3 == 1 ? big : small;
   }
   return state;
+}
+
+/// The same as observers see them.
+struct IdealGas {
+  Frame frame;
+  Population population;
+};
+
+inline IdealGas ideal_gas(std::size_t n, double box_length, std::uint64_t seed) {
+  const State state = scattered_disks(n, box_length, seed);
+  IdealGas system{{}, population_of(state)};
+  make_frame(state, system.frame);
+  return system;
 }
 
 }  // namespace sandglass

@@ -13,20 +13,8 @@ using namespace sandglass;
 
 namespace {
 
-struct System {
-  Frame frame;
-  Population population;
-};
-
-System ideal_gas(std::size_t n, double box_length, std::uint64_t seed) {
-  const State state = scattered_disks(n, box_length, seed);
-  System system{{}, population_of(state)};
-  make_frame(state, system.frame);
-  return system;
-}
-
 // Pairs counted by distance, for each pair of species.
-std::array<std::vector<std::uint64_t>, 3> count_pairs(const System& system, double width, std::size_t bins) {
+std::array<std::vector<std::uint64_t>, 3> count_pairs(const IdealGas& system, double width, std::size_t bins) {
   std::array<std::vector<std::uint64_t>, 3> counts;
   for (auto& list : counts) list.resize(bins);
   const std::vector<std::uint8_t> species = species_by_id(system.population);
@@ -43,7 +31,7 @@ std::array<std::vector<std::uint64_t>, 3> count_pairs(const System& system, doub
 
 TEST_CASE("pairs are counted as by brute force, in few and in many cells") {
   for (const std::size_t bins : {8, 36, 80}) {
-    const System system = ideal_gas(300, 40, 12);
+    const IdealGas system = ideal_gas(300, 40, 12);
     std::array<std::vector<std::uint64_t>, 3> brute;
     for (auto& list : brute) list.resize(bins);
     for (std::size_t i = 0; i < 300; ++i) {
@@ -60,7 +48,7 @@ TEST_CASE("pairs are counted as by brute force, in few and in many cells") {
 }
 
 TEST_CASE("g(r) of an ideal gas is 1 in every pair of species") {
-  const System system = ideal_gas(3000, 60, 3);
+  const IdealGas system = ideal_gas(3000, 60, 3);
   const auto counts = count_pairs(system, 0.5, 20);
   for (std::size_t pair = 0; pair < 3; ++pair) {
     const double per_area = pair_count(system.population, pair) / 3600;

@@ -14,20 +14,8 @@ using namespace sandglass;
 
 namespace {
 
-struct System {
-  Frame frame;
-  Population population;
-};
-
-System ideal_gas(std::size_t n, double box_length, std::uint64_t seed) {
-  const State state = scattered_disks(n, box_length, seed);
-  System system{{}, population_of(state)};
-  make_frame(state, system.frame);
-  return system;
-}
-
 // |sum exp(-i k.r)|^2 / N straight from the definition.
-double by_definition(const System& system, Range range, double kx, double ky) {
+double by_definition(const IdealGas& system, Range range, double kx, double ky) {
   std::complex<double> sum = 0;
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const std::uint32_t id = system.population.order[i];
@@ -57,7 +45,7 @@ TEST_CASE("a Fourier transform is the sum that defines it, column by column") {
 }
 
 TEST_CASE("every mode equals the sum that defines it, with and without a stride") {
-  const System system = ideal_gas(500, 50, 7);
+  const IdealGas system = ideal_gas(500, 50, 7);
   for (const int most : {7, 40, 128}) {
     const DensityModes modes = density_modes(system.frame, system.population, 4, most);
     CHECK(modes.modes <= most);
@@ -108,7 +96,7 @@ TEST_CASE("S(k) of a square lattice: N at the reciprocal lattice, else nothing")
 }
 
 TEST_CASE("S(k) of an ideal gas is 1 on rings, isotropic") {
-  const System system = ideal_gas(2000, 50, 21);
+  const IdealGas system = ideal_gas(2000, 50, 21);
   const StructureFactor s = structure_factor(density_modes(system.frame, system.population, 3), Group::small);
   const RingAverage ring = ring_average(s, 0.3);
   for (std::size_t i = 0; i < ring.value.size(); ++i) {
