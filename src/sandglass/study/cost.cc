@@ -87,13 +87,20 @@ MeasurementPlan plan_of(const Config& config) {
   return plan;
 }
 
+/// Collisions of runs of so many collisions per disk, were they all as fast as those of small systems.
+double collisions(const Config& config, double length) {
+  return length * static_cast<double>(config.system.particles) / 2 * interpolate(size_factor, log_size(config));
+}
+
 /// How often the run does each kind of work.
 Costs work_of(const Config& config) {
   const auto disks = static_cast<double>(config.system.particles);
-  const double length = calibration_length(config) + config.run.equilibrate + config.run.collisions;
+  const Config calibrated = calibration_config(config);
+  const bool apart = config.drive.kind != DriveKind::none && calibrated.system.particles < config.system.particles;
   const MeasurementPlan plan = plan_of(config);
-  return {.preparing = disks,
-          .collision = length * disks / 2 * interpolate(size_factor, log_size(config)),
+  return {.preparing = disks + (apart ? static_cast<double>(calibrated.system.particles) : 0),
+          .collision = collisions(calibrated, calibration_length(calibrated)) +
+                       collisions(config, config.run.equilibrate + config.run.collisions),
           .comparison = disks * static_cast<double>(plan.intervals * make_schedule(plan).evaluations()),
           .structure = disks * static_cast<double>(plan.structure_frames)};
 }
@@ -118,16 +125,7 @@ Config small_version(Config config) {
     config.prepare = {};
     if (config.system.packing_fraction <= insert_limit) config.prepare.method = PrepareMethod::insert;
   }
-  const Config whole = config;
-  for (std::uint64_t particles = probe_particles; particles < whole.system.particles; ++particles) {
-    config.system.particles = particles;
-    try {
-      check_config(config);
-      return config;
-    } catch (const InputError&) {  // these are not whole disks of each species, or their box is too small
-    }
-  }
-  return whole;
+  return smaller_config(config, probe_particles);
 }
 
 /// Processor time of one unit of what `work` does, which returns how many units it has done; it is called until the

@@ -93,6 +93,7 @@ class PointRun {
   RunFolder& folder_;
   const RunMonitor& monitor_;
   const double beat_;
+  const Config calibrated_{calibration_config(config_)};
   const Tuning tuning_{.threads = threads_for(config_.system.particles, config_.run.threads)};
 
   std::optional<Calibrator> calibrator_;  // only while it is at work: afterwards there is the simulation
@@ -125,22 +126,25 @@ State PointRun::start_state(const Progress& progress) const {
 
 void PointRun::start() {
   // What may still be refused is refused before the folder is touched.
-  State start = make_start(config_, [this](std::string_view stage, double fraction) {
+  const Progress progress = [this](std::string_view stage, double fraction) {
     if (stop_requested()) throw Stopped{};
     report_progress(monitor_.progress, stage, fraction);
-  });
+  };
+  State start = make_start(config_, progress), to_calibrate;
   check_start(start);
+  if (start.drive.kind != DriveKind::none && calibrated_.system.particles < start.size())
+    to_calibrate = make_start(calibrated_, progress);
   folder_.begin();
   write_whole(folder_.config(), config_to_toml(config_));
   log("initial state prepared");
   if (start.drive.kind == DriveKind::none) return begin_equilibrating(std::move(start));
   write_state(folder_.start(), start);
-  begin_calibrating(std::move(start));
+  begin_calibrating(to_calibrate.size() > 0 ? std::move(to_calibrate) : std::move(start));
 }
 
 void PointRun::begin_calibrating(State start) {
   CalibrationGoal goal{.temperature = config_.drive.temperature, .frequency = config_.drive.frequency, .beat = beat_};
-  goal.threads = tuning_.threads;
+  goal.threads = threads_for(calibrated_.system.particles, config_.run.threads);
   // Above 0.78 the collision rate ages for long: calibrate an aged copy, or T would drift from the start.
   if (config_.system.packing_fraction > 0.78) goal.settle = config_.run.equilibrate;
   calibrator_.emplace(std::move(start), goal);
@@ -186,7 +190,7 @@ void PointRun::resume() {
   check_same_run(config_, read_config_text(checkpoint.config_toml, "the checkpoint", folder_.path()), folder_);
   if (!std::filesystem::exists(folder_.config())) write_whole(folder_.config(), config_to_toml(config_));
   restore_fields(checkpoint, {own_fields()});
-  check_place(place_, checkpoint.state, config_, beat_);
+  check_place(place_, checkpoint.state, place_.calibrating == 1 ? calibrated_ : config_, beat_);
   earlier_wall_seconds_ = facts_.wall_seconds;
   const char* from = checkpoint.from_previous ? " from the previous checkpoint (the newest was damaged)" : "";
   if (place_.calibrating == 1) {

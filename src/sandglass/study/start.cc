@@ -55,6 +55,23 @@ Counts counts_of(const Config& config) {
   return {all - big_count, big_count};
 }
 
+Config smaller_config(const Config& config, std::uint64_t least) {
+  Config smaller = config;
+  for (smaller.system.particles = least; smaller.system.particles < config.system.particles;
+       ++smaller.system.particles) {
+    try {
+      check_config(smaller);
+      return smaller;
+    } catch (const InputError&) {  // these are not whole disks of each species, or their box is too small
+    }
+  }
+  return config;
+}
+
+Config calibration_config(const Config& config) {
+  return config.prepare.method == PrepareMethod::file ? config : smaller_config(config, 100'000);
+}
+
 State make_start(const Config& config, const Progress& progress) {
   require_memory(config.system.particles);
   State state = prepare(config, progress);

@@ -32,6 +32,20 @@ TEST_CASE("a start has the wanted disks, density, temperature, law and clocks") 
   for (const Disk& disk : state.disks) CHECK(std::isfinite(disk.next_kick));
 }
 
+TEST_CASE("a large system is calibrated with a smaller one of its kind, unless it comes from a file") {
+  Config config;
+  config.system.particles = 4'000'000;
+  config.system.big_fraction = 1.0 / 3;  // 10^5 would not be whole disks of each species
+  const Config calibrated = calibration_config(config);
+  CHECK(calibrated.system.particles == 100'002);
+  CHECK(beat_of(calibrated) == beat_of(config));
+  config.system.particles = 300;
+  CHECK(calibration_config(config).system.particles == 300);
+  config.system.particles = 3'000'000;
+  config.prepare.method = PrepareMethod::file;
+  CHECK(calibration_config(config).system.particles == 3'000'000);
+}
+
 TEST_CASE("a start file that is not there is refused by name") {
   Config config;
   config.prepare.method = PrepareMethod::file;
