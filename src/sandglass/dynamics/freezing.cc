@@ -145,12 +145,14 @@ void Strip::begin_later_pass() {
 }
 
 void Strip::resume(const Strip& other) {
-  const Rows around{(core_.first + core_.side - reach_) % core_.side, core_.count + 2 * reach_, core_.side};
+  auto beyond = [this](std::uint32_t rows) {
+    return Rows{(core_.first + core_.side - rows) % core_.side, core_.count + 2 * rows, core_.side};
+  };
+  const Rows met = beyond(reach_), kicking = beyond(lane_ - lane_ / 2);  // half of a lane belongs to this strip
   for (const Left& disk : other.left_) {
     if (!whole_ && !core_.hold(disk.row)) {
-      if (!around.hold(disk.row)) continue;
-      frozen_about_ = true;
-      expect_kick(disk.slot);
+      if (met.hold(disk.row)) frozen_about_ = true;
+      if (kicking.hold(disk.row)) expect_kick(disk.slot);
     } else if (is_frozen(records_[disk.slot])) {
       set_next(records_[disk.slot], never, Next::review, no_disk);
       concern(disk.slot);

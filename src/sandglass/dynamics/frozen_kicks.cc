@@ -64,27 +64,32 @@ void Strip::on_frozen_kick(const FrozenKick& kick) {
   const double t = kick.time, start = since(u), grown = growth(u, t);
   const std::uint32_t* const list = neighbours_.list(u);
   double nearest = never;  // no nearer one has a larger gap
-  for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) {
-    const std::uint32_t k = list[n];
-    if (is_done_at(k, t)) continue;
+  auto bound = [&](std::uint32_t k) {
+    if (k == u || is_done_at(k, t)) return;
     if (is_frozen(records_[k]))
       nearest = std::fmin(nearest, gap_at(u, start, k, since(k)) + grown + growth(k, t));
     else
       nearest = std::fmin(nearest, gap_at(u, start, k, t) + grown);
-  }
-  // Another strip cannot know of this kick: it must not reach there.
-  const double bodies = disk.radius + largest_radius();
-  if (!whole_ && !(nearest + grown + bodies + 2 * leash_ < neighbours_.grid().height(lane_ / 2))) {
-    failed_ = true;
-    return;
-  }
+  };
+  for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) bound(list[n]);
+
+  const Grid& grid = neighbours_.grid();
   const double x = std::fma(disk.vx, start - disk.time, disk.x), y = std::fma(disk.vy, start - disk.time, disk.y);
+  const double bodies = disk.radius + largest_radius();
+  if (!whole_) {  // another strip cannot know of this kick: it must not reach there
+    const double room = grid.height(lane_ / 2) - leash_;
+    auto within_room = [&] { return nearest + grown + bodies + leash_ < room; };
+    if (!within_room()) grid.visit_near(x, y, room, bound);  // in a dilute system lists may be empty
+    if (!within_room()) {
+      failed_ = true;
+      return;
+    }
+  }
   suspects_.clear();
   auto suspect = [&](std::uint32_t k) {
     if (k == u || is_done_at(k, t) || is_frozen(records_[k])) return;
     if (gap_at(u, start, k, t) - grown <= nearest) suspects_.push_back(k);
   };
-  const Grid& grid = neighbours_.grid();
   const double dx = grid.offset(cold_[u].centre.x, x), dy = grid.offset(cold_[u].centre.y, y);
   // Unlisted disks have list centres at least a skin beyond contact from the frozen one's.
   const double unlisted = leash_ + tables_->window.way - std::sqrt(dx * dx + dy * dy) - grown;
@@ -121,9 +126,10 @@ std::uint32_t Strip::nearest_known_partner(std::uint32_t i, double t) {
   if (!(best_gap < leash_ - std::sqrt(dx * dx + dy * dy))) {  // as in nearest_partner
     ++bookkeeping_.wide_partner_searches;
     const double margin = disk.radius + largest_radius() + leash_ + tables_->window.way + 1e-9;
-    if (!whole_ && !(best_gap + margin + leash_ < grid.height(lane_))) return undecided;
+    const double room = whole_ ? never : grid.height(lane_) - leash_;  // what lies beyond is another strip's
     for (double radius = margin + 2 * leash_;; radius *= 1.5) {
       if (best != no_disk && best_gap + margin < radius) radius = best_gap + margin;
+      if (!(radius < room)) return undecided;
       const bool all = grid.visit_near(x, y, radius, visit);
       if (all || best_gap + margin <= radius) break;
     }
