@@ -17,9 +17,13 @@
 namespace sandglass {
 namespace {
 
-/// What the new process does before it becomes the program; only calls that are safe after a fork.
-[[noreturn]] void become(const char* program, char* const* arguments, int log, pid_t parent) {
+/// What the new process does before it becomes the program; only calls that are safe after a fork. Signals are blocked
+/// until it has forgotten how its parent handles them: one that asks to stop would be taken note of and be lost.
+[[noreturn]] void become(const char* program, char* const* arguments, int log, pid_t parent,
+                         const sigset_t& unblocked) {
   ::setpgid(0, 0);
+  for (const int asks_to_stop : {SIGTERM, SIGINT, SIGUSR1}) ::signal(asks_to_stop, SIG_DFL);
+  ::sigprocmask(SIG_SETMASK, &unblocked, nullptr);
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   constexpr int resumable = 75;
   if (::getppid() != parent) ::_exit(resumable);  // it died before it could be watched
@@ -42,9 +46,13 @@ pid_t start_process(const std::string& program, const std::vector<std::string>& 
   const int output = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0666);
   if (output < 0) fail_to_write(log, errno);
   const pid_t parent = ::getpid();
+  sigset_t all, unblocked;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &unblocked);
   const pid_t child = ::fork();
-  if (child == 0) become(program.c_str(), words.data(), output, parent);
+  if (child == 0) become(program.c_str(), words.data(), output, parent, unblocked);
   const int error = errno;
+  ::pthread_sigmask(SIG_SETMASK, &unblocked, nullptr);
   ::close(output);
   if (child < 0) throw RunError(fmt::format("cannot start a process: {}", std::strerror(error)));
   return child;
