@@ -100,42 +100,5 @@ void Strip::on_frozen_kick(const FrozenKick& kick) {
   for (const std::uint32_t k : suspects_) freeze(k, t);
 }
 
-/// The disk nearest to i at time t among those that are known, or undecided.
-std::uint32_t Strip::nearest_known_partner(std::uint32_t i, double t) {
-  const Record& disk = records_[i];
-  double best_gap = never, rival_gap = never;
-  std::uint32_t best = no_disk;
-  auto visit = [&](std::uint32_t k) {
-    if (k == i || is_done_at(k, t)) return;
-    if (is_frozen(records_[k])) {
-      rival_gap = std::fmin(rival_gap, gap_at(i, t, k, since(k)) - growth(k, t));
-      return;
-    }
-    const double gap = surface_gap(disk, records_[k], disk.radius + records_[k].radius, t, box_);
-    if (gap < best_gap || (gap == best_gap && best != no_disk && cold_[k].id < cold_[best].id)) {
-      best_gap = gap;
-      best = k;
-    }
-  };
-  const std::uint32_t* const list = neighbours_.list(i);
-  for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) visit(list[n]);
-
-  const Grid& grid = neighbours_.grid();
-  const double x = std::fma(disk.vx, t - disk.time, disk.x), y = std::fma(disk.vy, t - disk.time, disk.y);
-  const double dx = grid.offset(cold_[i].centre.x, x), dy = grid.offset(cold_[i].centre.y, y);
-  if (!(best_gap < leash_ - std::sqrt(dx * dx + dy * dy))) {  // as in nearest_partner
-    ++bookkeeping_.wide_partner_searches;
-    const double margin = disk.radius + largest_radius() + leash_ + tables_->window.way + 1e-9;
-    const double room = whole_ ? never : grid.height(lane_) - leash_;  // what lies beyond is another strip's
-    for (double radius = margin + 2 * leash_;; radius *= 1.5) {
-      if (best != no_disk && best_gap + margin < radius) radius = best_gap + margin;
-      if (!(radius < room)) return undecided;
-      const bool all = grid.visit_near(x, y, radius, visit);
-      if (all || best_gap + margin <= radius) break;
-    }
-  }
-  return rival_gap <= best_gap ? undecided : best;
-}
-
 }  // namespace SANDGLASS_ISA
 }  // namespace sandglass

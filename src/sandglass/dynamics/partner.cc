@@ -1,4 +1,5 @@
 // Whom a kick's counter-kick goes to.
+#include <algorithm>
 #include <cmath>
 
 #include "sandglass/dynamics/simd.h"
@@ -27,47 +28,61 @@ Smallest Strip::smallest_gap(const Record& disk, const std::uint32_t* list, doub
 }
 #endif
 
-/// The disk with the smallest gap of surfaces to disk i at time t; the smaller id at equal gaps.
+/// The disk with the smallest gap of surfaces to disk i at time t; the smaller id at equal gaps. In a window: among
+/// those that are known, or undecided where a frozen one may be nearer, or one of which another strip alone knows.
 std::uint32_t Strip::nearest_partner(std::uint32_t i, double t) {
   const Record& disk = records_[i];
-  double best_gap = never;
+  double best_gap = never, rival_gap = never;
   std::uint32_t best = no_disk;
   auto visit = [&](std::uint32_t k) {
-    if (k == i) return;
+    if (k == i || is_done_at(k, t)) return;
+    if (is_frozen(records_[k])) {
+      rival_gap = std::fmin(rival_gap, gap_at(i, t, k, since(k)) - growth(k, t));
+      return;
+    }
     const double gap = surface_gap(disk, records_[k], disk.radius + records_[k].radius, t, box_);
     if (gap < best_gap || (gap == best_gap && best != no_disk && cold_[k].id < cold_[best].id)) {
       best_gap = gap;
       best = k;
     }
   };
-  const std::uint32_t* const list = neighbours_.list(i);
+  auto visit_listed = [&](std::uint32_t first, std::uint32_t last) {
+    for (const std::uint32_t* k = neighbours_.list(i) + first; first < last; ++first, ++k) visit(*k);
+  };
 #ifdef SANDGLASS_SIMD
-  for (std::uint32_t first = 0; first < disk.neighbour_count; first += Vector::width) {
+  const std::uint32_t* const list = neighbours_.list(i);
+  const bool no_frozen_one_listed = cold_[i].frozen_at == unconcerned;
+  for (std::uint32_t first = 0; no_frozen_one_listed && first < disk.neighbour_count; first += Vector::width) {
     const auto [gap, lanes] = smallest_gap(disk, list + first, t);
     if (gap > best_gap) continue;
     if (gap < best_gap && (lanes & (lanes - 1)) == 0) [[likely]]
       best_gap = gap, best = list[first + static_cast<unsigned>(__builtin_ctz(lanes))];
     else  // ties are for the rule
-      for (std::uint32_t n = first; n < first + Vector::width && n < disk.neighbour_count; ++n) visit(list[n]);
+      visit_listed(first, std::min<std::uint32_t>(first + Vector::width, disk.neighbour_count));
   }
+  if (!no_frozen_one_listed) visit_listed(0, disk.neighbour_count);
 #else
-  for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) visit(list[n]);
+  visit_listed(0, disk.neighbour_count);
 #endif
 
-  // Unlisted disks have list centres at least R_i + R_j + 2 leash from ours; each of the two has moved from its own.
+  // Unlisted disks have list centres at least R_i + R_j + skin from ours, and skin = 2 leash + way; each of the two has
+  // moved by leash at most, a frozen one by way as well.
   const double x = std::fma(disk.vx, t - disk.time, disk.x), y = std::fma(disk.vy, t - disk.time, disk.y);
   const Grid& grid = neighbours_.grid();
   const double dx = grid.offset(cold_[i].centre.x, x), dy = grid.offset(cold_[i].centre.y, y);
   const double moved = std::sqrt(dx * dx + dy * dy);
-  if (best_gap < leash_ - moved) return best;
-
-  ++bookkeeping_.wide_partner_searches;
-  const double margin = disk.radius + largest_radius() + leash_ + 1e-9;
-  for (double radius = margin + 2 * leash_;; radius *= 1.5) {
-    if (best != no_disk && best_gap + margin < radius) radius = best_gap + margin;
-    const bool all = neighbours_.grid().visit_near(x, y, radius, visit);
-    if (all || best_gap + margin <= radius) return best;
+  if (!(best_gap < leash_ - moved)) {
+    ++bookkeeping_.wide_partner_searches;
+    const double margin = disk.radius + largest_radius() + leash_ + tables_->window.way + 1e-9;
+    const double room = whole_ ? never : grid.height(lane_) - leash_;  // what lies beyond is another strip's
+    for (double radius = margin + 2 * leash_;; radius *= 1.5) {
+      if (best != no_disk && best_gap + margin < radius) radius = best_gap + margin;
+      if (!(radius < room)) return undecided;
+      const bool all = grid.visit_near(x, y, radius, visit);
+      if (all || best_gap + margin <= radius) break;
+    }
   }
+  return rival_gap <= best_gap && rival_gap < never ? undecided : best;
 }
 
 /// One of the disks whose centres are within reach * (R_i + R_j) of disk i at time t, picked by the kick's own random

@@ -172,9 +172,7 @@ void Strip::on_kick(std::uint32_t i, double t) {
   const bool pair = drive.kind == DriveKind::pair;
   std::uint32_t j = no_disk;
   if (pair) {
-    j = drive.partner == PartnerRule::within ? partner_within_reach(i, t, kick)
-        : knows_all()                        ? nearest_partner(i, t)
-                                             : nearest_known_partner(i, t);
+    j = drive.partner == PartnerRule::within ? partner_within_reach(i, t, kick) : nearest_partner(i, t);
     if (j == undecided) return freeze(i, t);
   }
   ++cold.kick_count;

@@ -142,7 +142,6 @@ class alignas(128) Strip {
 
   static constexpr std::uint32_t undecided = no_disk - 1;  // in place of a partner: a frozen disk may be nearer
   std::uint32_t nearest_partner(std::uint32_t i, double t);
-  std::uint32_t nearest_known_partner(std::uint32_t i, double t);
   [[nodiscard]] Smallest smallest_gap(const Record& disk, const std::uint32_t* list, double t) const;
   std::uint32_t partner_within_reach(std::uint32_t i, double t, const Kick& kick);
 

@@ -53,7 +53,7 @@ std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) {
 
 /// Wide enough that no two strips touch the same disk; with pair kicks, that these do not act across.
 std::uint32_t IsaEngine::lane_rows(const Neighbours& neighbours) const {
-  return neighbours.grid().rows_within((state_.drive.kind == DriveKind::pair ? 4 : 2) * neighbours.longest_range());
+  return neighbours.grid().rows_within((state_.drive.kind == DriveKind::pair ? 3 : 2) * neighbours.longest_range());
 }
 
 /// Gives the disks to strips, according to what is foreseen for them now.
