@@ -33,13 +33,14 @@ void IsaEngine::run(double end) {
 std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) {
   if (!crew || (state_.drive.kind == DriveKind::pair && state_.drive.partner == PartnerRule::within)) return 1;
   const Grid& grid = neighbours.grid();
-  const std::uint32_t wide_lane = grid.rows_within(4 * neighbours.longest_range());
-  const std::uint32_t worth = tuning_.strip_rows > 0 ? tuning_.strip_rows : 3 * wide_lane, possible = wide_lane + 2;
+  const std::uint32_t lane = lane_rows(neighbours), wide_lane = grid.rows_within(4 * neighbours.longest_range());
+  const std::uint32_t worth = tuning_.strip_rows > 0 ? tuning_.strip_rows : 3 * wide_lane;
+  const std::uint32_t possible = (lane > wide_lane ? lane : wide_lane) + 2;
   std::uint32_t strips = grid.side() / (worth > possible ? worth : possible);
   if (strips > crew->size()) strips = crew->size();
   if (strips < 2) return 1;
   // The longer a window, the fewer disks are frozen at its start, and the more lists expire, as (1 - window_part)^-2.
-  const double in_lanes = static_cast<double>(strips * lane_rows(neighbours)) / grid.side();
+  const double in_lanes = static_cast<double>(strips * lane) / grid.side();
   window_part_ =
       tuning_.window_part > 0 ? tuning_.window_part : std::fmax(0.05, std::fmin(1.5 * std::sqrt(in_lanes), 0.3));
   if (tuning_.strip_rows > 0) return strips;
@@ -51,9 +52,25 @@ std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) {
   return strips / (1 + 1.5 * in_lanes / collisions) > 1.2 ? strips : 1;
 }
 
-/// Wide enough that no two strips touch the same disk; with pair kicks, that these do not act across.
+/// Wide enough that no two strips touch the same disk; with pair kicks, that hardly one of a frozen disk may reach
+/// beyond the lane's half (see on_frozen_kick).
 std::uint32_t IsaEngine::lane_rows(const Neighbours& neighbours) const {
-  return neighbours.grid().rows_within((state_.drive.kind == DriveKind::pair ? 3 : 2) * neighbours.longest_range());
+  const Grid& grid = neighbours.grid();
+  const std::uint32_t apart = grid.rows_within(2 * neighbours.longest_range());
+  if (state_.drive.kind != DriveKind::pair) return apart;
+  // A gap is larger than G with a chance of about exp(-P A / T), P the pressure and A the area between two circles,
+  // that of contact and one wider by G: what it costs to push all others out of there. Scaled-particle theory: P = n T
+  // / (1 - eta)^2. A chance of 10^-9, and half as much again for clusters of inelastic disks.
+  const auto& radius = state_.mixture.radius;
+  const double contact = radius[small] + radius[big], largest = 2 * std::fmax(radius[small], radius[big]);
+  double squares = 0;
+  for (std::size_t i = 0; i < tables_.size; ++i) squares += tables_.records[i].radius * tables_.records[i].radius;
+  const double box_area = tables_.box.length * tables_.box.length, eta = 3.14159 * squares / box_area;
+  const double area = 1.5 * 20.7 * (1 - eta) * (1 - eta) * box_area / static_cast<double>(tables_.size);
+  const double gap = std::sqrt(contact * contact + area / 3.14159) - contact;
+  const double skin = tables_.neighbours.skin;  // two leashes and a way; another way for the growth of the two
+  const std::uint32_t half = grid.rows_within(largest + 1.3 * skin + gap);
+  return 2 * half > apart ? 2 * half : apart;
 }
 
 /// Gives the disks to strips, according to what is foreseen for them now.
