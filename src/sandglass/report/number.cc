@@ -32,7 +32,11 @@ std::string with_error(double value, double error) {
   if (!std::isfinite(error) || error <= 0) return short_number(value);
   int exponent = static_cast<int>(std::floor(std::log10(error)));
   if (std::floor(error * std::pow(10.0, -exponent)) < 2) --exponent;  // two digits for an error that begins with 1
-  if (exponent > 0 || exponent < -9) return fmt::format("{} ± {}", short_number(value), short_number(error));
+  if (exponent > 0 || exponent < -9) {
+    const double unit = std::pow(10.0, exponent);
+    auto rounded = [unit](double number) { return short_number(std::round(number / unit) * unit); };
+    return fmt::format("{} ± {}", rounded(value), rounded(error));
+  }
   const double digits = std::round(error * std::pow(10.0, -exponent));
   return fmt::format("{:.{}f}({:.0f})", value, -exponent, digits);
 }

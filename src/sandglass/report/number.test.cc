@@ -13,7 +13,9 @@ TEST_CASE("a value with its error shows the digits that the error allows") {
   CHECK(with_error(1.0, 0.0196) == "1.000(20)");  // 1.96e-2 begins with 1: two digits, rounded up
   CHECK(with_error(1.0, 0.0099) == "1.000(10)");  // one digit would round to 10: two are as good
   CHECK(with_error(12345, 12) == "12345(12)");
-  CHECK(with_error(12345, 30) == "12\u2009345 ± 30");
+  CHECK(with_error(12344, 30) == "12\u2009340 ± 30");
+  CHECK(with_error(2951, 235.2) == "3\u2009000 ± 200");
+  CHECK(with_error(2951, 185.2) == "2\u2009950 ± 190");
 }
 
 TEST_CASE("without an error or a value it says so") {
