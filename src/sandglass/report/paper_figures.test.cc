@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "sandglass/report/figure_json.h"
@@ -151,6 +153,30 @@ TEST_CASE("energy that goes in and does not come out is no steady state") {
   CHECK(figure(paper_figures(study_of({p})), 24).checks[0].outcome == Outcome::differs);
   p.numbers["energy/dissipated"] = {10, 0}, p.numbers["energy/balance"] = {1e-6, 0};
   CHECK(figure(paper_figures(study_of({p})), 24).checks[0].outcome == Outcome::differs);
+}
+
+TEST_CASE("the exponent of a long-time tail is found where the tail stands out of the noise") {
+  auto tail_check = [](double exponent, double noise) {
+    StatePoint p = point(0.4, 0.7, 1000000);
+    auto values = [&](const std::string& name) -> std::vector<double>& {
+      const std::string path = "/dynamics/small/velocity_autocorrelation/" + name;
+      return std::get<std::vector<double>>(
+          std::find_if(p.results.begin(), p.results.end(), [&](const Dataset& d) { return d.path == path; })->values);
+    };
+    auto &s = values("collisions"), &y = values("value"), &error = values("error");
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      s[i] = 0.1 * std::pow(1.2, static_cast<double>(i));
+      y[i] = std::pow(s[i] + 1, exponent);
+      error[i] = noise * y[i];
+    }
+    REQUIRE(s.back() > 100);
+    return figure(paper_figures(study_of({p})), 2).checks.front();
+  };
+  // d ln(s + 1) / d ln s is ln(101 / 11) / ln 10 = 0.963 on average over the tail: an exponent of -1.06.
+  CHECK(tail_check(-1.1, 0.02).outcome == Outcome::agrees);
+  CHECK(tail_check(-1.1, 0.02).finding.find(" -1.06") != std::string::npos);
+  CHECK(tail_check(-1.6, 0.02).outcome == Outcome::differs);
+  CHECK(tail_check(-1.1, 0.6).outcome == Outcome::not_enough_data);
 }
 
 TEST_CASE("CSV and JSON hold every point, text is quoted") {
