@@ -164,7 +164,6 @@ class alignas(128) Strip {
   [[nodiscard]] bool is_done_at(std::uint32_t k, double t) const;
   [[nodiscard]] double growth(std::uint32_t frozen_disk, double t) const;
   [[nodiscard]] bool is_done(std::uint32_t i) const { return !first_pass_ && cold_[i].frozen_at == unconcerned; }
-  [[nodiscard]] bool knows_all() const { return whole_ && first_pass_; }
   [[nodiscard]] std::uint32_t row(std::uint32_t i) const { return neighbours_.grid().row_of(cold_[i].centre); }
 
   [[nodiscard]] bool before(std::uint32_t a, std::uint32_t b) const;
