@@ -38,7 +38,7 @@ def displacement(eta, eps, t):
 
 def velocity(eta, eps, s):
     backscattering = 0.08 * max(0, eps - 0.68) * max(0, eta - 0.65) / 0.02
-    return np.exp(-s) + 0.15 * (1 - eta) * s / (1 + s) ** 2.1 * (eta < 0.71) - backscattering * s * np.exp(-s / 4) / 4
+    return np.exp(-s) + 0.15 * (1 - eta) * s**2 / (1 + s**2) ** 1.5 * (eta < 0.71) - backscattering * s * np.exp(-s / 4) / 4
 
 
 def pair_correlation(eta, r, contact):
