@@ -59,6 +59,7 @@ class IsaEngine final : public Engine {
   std::unique_ptr<Strip[]> first_;    // the strips of the first pass
   std::unique_ptr<Strip[]> shifted_;  // those of the second, around the borders of the first
   std::unique_ptr<Rows[]> lanes_;     // between the strips of the first pass
+  std::uint32_t lane_ = 0;            // rows of each of these
   double window_part_ = 0;            // how far the fastest disk may fly in a window, in skins
   double top_speed_[species_count] = {0, 0};
   double caution_ = 1;          // grows with every window that had to be undone

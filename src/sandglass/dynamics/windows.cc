@@ -33,14 +33,15 @@ void IsaEngine::run(double end) {
 std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) {
   if (!crew || (state_.drive.kind == DriveKind::pair && state_.drive.partner == PartnerRule::within)) return 1;
   const Grid& grid = neighbours.grid();
-  const std::uint32_t lane = lane_rows(neighbours), wide_lane = grid.rows_within(4 * neighbours.longest_range());
+  lane_ = lane_rows(neighbours);
+  const std::uint32_t wide_lane = grid.rows_within(4 * neighbours.longest_range());
   const std::uint32_t worth = tuning_.strip_rows > 0 ? tuning_.strip_rows : 3 * wide_lane;
-  const std::uint32_t possible = (lane > wide_lane ? lane : wide_lane) + 2;
+  const std::uint32_t possible = (lane_ > wide_lane ? lane_ : wide_lane) + 2;
   std::uint32_t strips = grid.side() / (worth > possible ? worth : possible);
   if (strips > crew->size()) strips = crew->size();
   if (strips < 2) return 1;
   // The longer a window, the fewer disks are frozen at its start, and the more lists expire, as (1 - window_part)^-2.
-  const double in_lanes = static_cast<double>(strips * lane) / grid.side();
+  const double in_lanes = static_cast<double>(strips * lane_) / grid.side();
   window_part_ =
       tuning_.window_part > 0 ? tuning_.window_part : std::fmax(0.05, std::fmin(1.5 * std::sqrt(in_lanes), 0.3));
   if (tuning_.strip_rows > 0) return strips;
@@ -79,7 +80,7 @@ void IsaEngine::divide() {
   const double range = whole_.neighbours().longest_range();
   auto rows_within = [&](double distance) { return whole_.neighbours().grid().rows_within(distance); };
   reach_ = rows_within(range);
-  const std::uint32_t lane = lane_rows(whole_.neighbours()), wide_lane = rows_within(4 * range);
+  const std::uint32_t lane = lane_, wide_lane = rows_within(4 * range);
   first_ = std::make_unique<Strip[]>(n);
   shifted_ = std::make_unique<Strip[]>(n);
   lanes_ = std::make_unique<Rows[]>(n);

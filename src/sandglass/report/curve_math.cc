@@ -147,6 +147,26 @@ Check falls(std::string claim, std::span<const Ranked> sequence, const std::stri
   return monotonic(std::move(claim), sequence, what, argument, -1);
 }
 
+Check not_all_flat(std::string claim, std::string lacking, std::span<const NamedExponent> exponents,
+                   const std::string& heading) {
+  Check check{std::move(claim), Check::Outcome::not_enough_data, std::move(lacking)};
+  std::string bent, flat;
+  std::size_t flat_ones = 0;
+  for (const auto& [name, exponent] : exponents) {
+    const std::string text = fmt::format(" {} ({});", with_error(exponent.value, exponent.error), name);
+    if (std::abs(exponent.value) > significant_order * exponent.error)
+      bent += text;
+    else if (exponent.error < 0.05)
+      flat += text, ++flat_ones;
+  }
+  if (bent.empty() && flat.empty()) return check;
+  if (!bent.empty()) check.outcome = Check::Outcome::agrees;
+  if (bent.empty() && flat_ones > 1) check.outcome = Check::Outcome::differs;
+  check.finding = heading + bent + (flat.empty() ? "" : " zero within three errors:" + flat);
+  check.finding.back() = '.';
+  return check;
+}
+
 Check joined(std::string claim, std::span<const Check> parts) {
   Check all{std::move(claim), Outcome::not_enough_data, {}};
   const auto count = [&](Outcome outcome) {

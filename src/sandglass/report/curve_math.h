@@ -52,6 +52,18 @@ struct Ranked {
 Check rises(std::string claim, std::span<const Ranked> sequence, const std::string& what, const std::string& argument);
 Check falls(std::string claim, std::span<const Ranked> sequence, const std::string& what, const std::string& argument);
 
+/// An exponent and what it belongs to.
+struct NamedExponent {
+  std::string name;
+  Measured exponent;
+};
+
+/// Whether not all curves are flat. Agrees if any exponent differs from zero by more than `significant_order` standard
+/// errors; differs if all are zero within these, known to 0.05 and at least two: one flat curve does not say that all
+/// are. `heading` begins the finding; `lacking` is the finding without data.
+Check not_all_flat(std::string claim, std::string lacking, std::span<const NamedExponent> exponents,
+                   const std::string& heading);
+
 /// Checks of several families as one: differs if any does, agrees if at least one does and none differs.
 Check joined(std::string claim, std::span<const Check> parts);
 

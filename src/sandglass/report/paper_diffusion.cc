@@ -44,14 +44,9 @@ MakeCurve divided(double (*divisor)(double)) {
   };
 }
 
-/// Exponent of a curve over late collisions per disk, at the points of large systems up to a density.
-struct LateSlope {
-  std::string name;
-  Measured exponent;
-};
-
-std::vector<LateSlope> late_slopes(const Study& study, const MakeCurve& make, double highest_density) {
-  std::vector<LateSlope> slopes;
+/// Exponents of a curve over late collisions per disk, at the points of large systems up to a density.
+std::vector<NamedExponent> late_slopes(const Study& study, const MakeCurve& make, double highest_density) {
+  std::vector<NamedExponent> slopes;
   for (const double restitution : tail_restitutions) {
     for (const StatePoint* point : densities_at(study, restitution, Prefer::largest).points) {
       if (point->config.system.particles < large || point->packing_fraction() > highest_density + 1e-4) continue;
@@ -92,7 +87,7 @@ Figure growth(const Study& study) {
   }
   Check check{"D grows from s = 100 to s = 800 (η ≤ 0.6)", Outcome::not_enough_data, needs_large};
   std::string grows, shrinks, unclear;
-  for (const LateSlope& slope : late_slopes(study, diffusion, 0.6)) {
+  for (const NamedExponent& slope : late_slopes(study, diffusion, 0.6)) {
     const std::string text =
         fmt::format(" {} ({});", with_error(slope.exponent.value, slope.exponent.error), slope.name);
     const double error = significant_order * slope.exponent.error;
@@ -122,25 +117,8 @@ Figure logarithms(const Study& study) {
   add_family(figure, family, std::span(paper_densities).first(14), "mean square displacement", by_log);
   add_family(panel, family, {}, "mean square displacement", by_root);
   for (const auto& [make, name] : {std::pair(by_log, "D/ln s"), std::pair(by_root, "D/√ln s")}) {
-    Check check{fmt::format("{} is not flat over all densities (100 < s < 800)", name), Outcome::not_enough_data,
-                needs_large};
-    std::string bent, flat;
-    std::size_t flat_ones = 0;  // one alone does not say that all are
-    const auto slopes = late_slopes(study, make, 1);
-    for (const LateSlope& slope : slopes) {
-      const auto& [value, error] = slope.exponent;
-      const std::string text = fmt::format(" {} ({});", with_error(value, error), slope.name);
-      if (std::abs(value) > significant_order * error)
-        bent += text;
-      else if (error < 0.05)
-        flat += text, ++flat_ones;
-    }
-    if (!bent.empty() || !flat.empty()) {
-      if (!bent.empty() || flat_ones > 1) check.outcome = bent.empty() ? Outcome::differs : Outcome::agrees;
-      check.finding = "Exponents:" + bent + (flat.empty() ? "" : " zero within three errors:" + flat);
-      check.finding.back() = '.';
-    }
-    figure.checks.push_back(check);
+    figure.checks.push_back(not_all_flat(fmt::format("{} is not flat over all densities (100 < s < 800)", name),
+                                         needs_large, late_slopes(study, make, 1), "Exponents:"));
   }
   figure.panels = {std::move(panel)};
   return figure;

@@ -150,27 +150,16 @@ std::optional<Curve> multiplied(const StatePoint& point, double (*factor)(double
 
 /// Whether a multiplied tail is flat: its exponent is zero within the errors everywhere.
 Check flatness(const Figure& figure, const Study& study, const std::string& what) {
-  Check check{what + " is not flat", Outcome::not_enough_data,
-              "It takes N ≥ 10 000 and a signal of two errors up to s = 100."};
-  std::string bent, flat;
-  std::size_t flat_ones = 0;  // one alone does not say that all are
+  std::vector<NamedExponent> exponents;
   for (const Curve& curve : figure.curves) {
     const bool large = std::any_of(study.points.begin(), study.points.end(), [&](const StatePoint& p) {
       return same_level(p.restitution(), curve.level) && p.config.system.particles >= particles_for_tails;
     });
     const Measured exponent = tail_exponent(curve);
-    if (!large || !std::isfinite(exponent.error)) continue;
-    const std::string text = fmt::format(" {} ({});", with_error(exponent.value, exponent.error), curve.name);
-    if (std::abs(exponent.value) > significant_order * exponent.error)
-      bent += text;
-    else if (exponent.error < 0.05)
-      flat += text, ++flat_ones;
+    if (large && std::isfinite(exponent.error)) exponents.push_back({curve.name, exponent});
   }
-  if (bent.empty() && flat.empty()) return check;
-  if (!bent.empty() || flat_ones > 1) check.outcome = bent.empty() ? Outcome::differs : Outcome::agrees;
-  check.finding = fmt::format("Exponents over {:g} < s < {:g}:{}{}", tail_from, tail_to, bent, flat);
-  check.finding.back() = '.';
-  return check;
+  return not_all_flat(what + " is not flat", "It takes N ≥ 10 000 and a signal of two errors up to s = 100.", exponents,
+                      fmt::format("Exponents over {:g} < s < {:g}:", tail_from, tail_to));
 }
 
 Figure tail_shapes(const Study& study) {

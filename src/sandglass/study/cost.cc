@@ -96,7 +96,7 @@ double collisions(const Config& config, double length) {
 Costs work_of(const Config& config) {
   const auto disks = static_cast<double>(config.system.particles);
   const Config calibrated = calibration_config(config);
-  const bool apart = config.drive.kind != DriveKind::none && calibrated.system.particles < config.system.particles;
+  const bool apart = calibrated.system.particles < config.system.particles;
   const MeasurementPlan plan = plan_of(config);
   return {.preparing = disks + (apart ? static_cast<double>(calibrated.system.particles) : 0),
           .collision = collisions(calibrated, calibration_length(calibrated)) +

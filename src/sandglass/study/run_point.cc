@@ -132,8 +132,7 @@ void PointRun::start() {
   };
   State start = make_start(config_, progress), to_calibrate;
   check_start(start);
-  if (start.drive.kind != DriveKind::none && calibrated_.system.particles < start.size())
-    to_calibrate = make_start(calibrated_, progress);
+  if (calibrated_.system.particles < start.size()) to_calibrate = make_start(calibrated_, progress);
   folder_.begin();
   write_whole(folder_.config(), config_to_toml(config_));
   log("initial state prepared");

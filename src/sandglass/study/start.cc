@@ -69,7 +69,8 @@ Config smaller_config(const Config& config, std::uint64_t least) {
 }
 
 Config calibration_config(const Config& config) {
-  return config.prepare.method == PrepareMethod::file ? config : smaller_config(config, 100'000);
+  const bool as_it_is = config.drive.kind == DriveKind::none || config.prepare.method == PrepareMethod::file;
+  return as_it_is ? config : smaller_config(config, 100'000);
 }
 
 State make_start(const Config& config, const Progress& progress) {

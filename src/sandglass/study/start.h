@@ -22,7 +22,7 @@ Config smaller_config(const Config& config, std::uint64_t least);
 
 /// What the drive is calibrated with. Its frequency and amplitude do not depend on the size of the system, and 10^5
 /// disks tell the temperature to 0.2 % in any window: a larger system is not run for that. One from a file is, since
-/// nobody knows how to make a smaller one like it.
+/// nobody knows how to make a smaller one like it. Without a drive, `config` itself.
 Config calibration_config(const Config& config);
 
 /// Disks in place by the wanted method, Gaussian velocities at the wanted temperature with no total momentum,
