@@ -36,19 +36,22 @@ class Kills(program.Case):
         print(f"{kills} kills in {runs} runs, {before_checkpoint} before there was a checkpoint: nothing lost")
 
     def test_stopped_at_random_moments(self):
-        expected, seconds, _ = faults.undisturbed()
+        expected, longest, _ = faults.undisturbed()
         config = faults.write_config(self.folder)
-        stops = 0
-        for run in range(faults.TIMES):
+        stops = run = 0
+        while run < faults.TIMES or stops == 0:
             code = faults.RESUMABLE
+            stops_before = stops
             while code == faults.RESUMABLE:
-                limit = faults.RANDOM.uniform(0.2, 0.5) * seconds
+                limit = faults.RANDOM.uniform(0.2, 0.5) * longest
                 running = faults.start(config, self.folder / f"run{run}", "--max-walltime", f"{limit:.3f}")
                 code, text = faults.finish(running)
                 stops += code == faults.RESUMABLE
             self.assertEqual(code, faults.DONE, text)
             self.assertEqual(faults.results(self.folder / f"run{run}"), expected)
-        self.assertGreater(stops, 0)
+            if stops == stops_before:  # the undisturbed run was slow, the machine being busy then
+                longest /= 2
+            run += 1
         print(f"\n{stops} stops at a wall-time limit: nothing lost")
 
     def test_signals(self):
