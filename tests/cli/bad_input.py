@@ -206,7 +206,7 @@ class StartFile(program.Case):
                 with h5py.File(self.start, "r+") as file:
                     del file["particles/all/species"]
                     spoil(file["particles/all"])
-                self.refused_start(self.start, saying=["trajectory.h5"], timeout=30, memory=2 << 30)
+                self.refused_start(self.start, saying=["trajectory.h5"], timeout=100, memory=2 << 30)
 
     def test_impossible_disks(self):
         good = self.start.read_bytes()
@@ -216,7 +216,7 @@ class StartFile(program.Case):
                 self.start.write_bytes(good)
                 with h5py.File(self.start, "r+") as file:
                     file["particles/all"][name][...] = values
-                self.refused_start(self.start, saying=[], timeout=30, memory=2 << 30)
+                self.refused_start(self.start, saying=[], timeout=100, memory=2 << 30)
 
     def test_damage_anywhere(self):
         """Read, or refused with the name of the file; never a crash, a hang, or much memory."""
@@ -229,7 +229,7 @@ class StartFile(program.Case):
             self.start.write_bytes(damaged)
             result = program.sandglass("prepare", self.tiny, "-o", self.folder / "state.h5", "--set",
                                        "prepare.method=file", "--set", f"prepare.file={self.start}",
-                                       timeout=30, memory=4 << 30)
+                                       timeout=100, memory=4 << 30)
             (self.folder / "state.h5").unlink(missing_ok=True)
             self.assertIn(result.returncode, (program.DONE, program.BAD_INPUT), result.stderr)
 
@@ -237,7 +237,7 @@ class StartFile(program.Case):
         pipe = self.folder / "pipe.h5"
         os.mkfifo(pipe)
         for path in (pipe, self.folder, "/dev/zero", "/dev/stdin"):
-            self.refused_start(path, saying=["not a file"], timeout=10)
+            self.refused_start(path, saying=["not a file"], timeout=100)
 
 
 class NotAFile(program.Case):
@@ -247,11 +247,11 @@ class NotAFile(program.Case):
         pipe = self.folder / "pipe.toml"
         os.mkfifo(pipe)
         for path in (pipe, self.folder, "/dev/zero"):
-            self.refused("run", path, "-o", self.folder / "out", saying=["give a file"], timeout=10)
+            self.refused("run", path, "-o", self.folder / "out", saying=["give a file"], timeout=100)
         large = self.folder / "large.toml"
         with open(large, "wb") as file:
             file.truncate(100_000_000)
-        self.refused("run", large, "-o", self.folder / "out", saying=["longer"], timeout=10, memory=1 << 30)
+        self.refused("run", large, "-o", self.folder / "out", saying=["longer"], timeout=100, memory=1 << 30)
 
     def test_in_a_run(self):
         for name in ("config.toml", "summary.json", "checkpoint.h5"):
@@ -263,7 +263,7 @@ class NotAFile(program.Case):
                     (out / "checkpoint.previous.h5").unlink(missing_ok=True)
                 (out / name).unlink()
                 os.mkfifo(out / name)
-                self.refused("run", self.tiny, "-o", out, "--resume", saying=[name], timeout=10)
+                self.refused("run", self.tiny, "-o", out, "--resume", saying=[name], timeout=100)
 
 
 class HostileTexts(program.Case):
@@ -273,7 +273,7 @@ class HostileTexts(program.Case):
         self.copy_of_tiny_run(out)
         (out / "report.html").unlink()
         (out / name).write_text(text)
-        result = program.sandglass("run", self.tiny, "-o", out, "--resume", timeout=30, memory=2 << 30)
+        result = program.sandglass("run", self.tiny, "-o", out, "--resume", timeout=100, memory=2 << 30)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result, out
 

@@ -15,7 +15,7 @@ SMALL = ("--particles", "200", "--age", "10", "--collisions", "100")
 
 
 def script(name, *arguments, cwd):
-    return subprocess.run([sys.executable, program.ROOT / "bench" / name, *map(str, arguments)], cwd=cwd, timeout=120,
+    return subprocess.run([sys.executable, program.ROOT / "bench" / name, *map(str, arguments)], cwd=cwd, timeout=400,
                           text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 

@@ -29,7 +29,7 @@ class Pages(program.Case):
                 words = shlex.split(command, comments=True)
                 if shutil.which(words[0]) is None and "/" not in words[0]:
                     self.skipTest(f"{words[0]} is not installed")
-                done = subprocess.run(words, cwd=self.folder, timeout=400, text=True, stdin=subprocess.DEVNULL,
+                done = subprocess.run(words, cwd=self.folder, timeout=900, text=True, stdin=subprocess.DEVNULL,
                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
                 self.assertEqual(done.returncode, 0, done.stdout)
 

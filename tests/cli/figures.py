@@ -30,7 +30,7 @@ class Figures(program.Case):
         cls.study = pathlib.Path(tempfile.mkdtemp(prefix="sandglass-figures-")) / "study"
         cls.addClassCleanup(shutil.rmtree, cls.study.parent, ignore_errors=True)
         synthetic_study.write_study(cls.study)
-        cls.result = program.sandglass("figures", cls.study, "--format", "png,svg", timeout=300)
+        cls.result = program.sandglass("figures", cls.study, "--format", "png,svg", timeout=900)
 
     def figure(self, number):
         return json.loads((self.study / "figures" / f"fig{number:02}.json").read_text())
@@ -147,7 +147,7 @@ class Figures(program.Case):
         for python, saying in (("/nonexistent/python3", "does not start"), (self.bare_python(), "no matplotlib")):
             environment = dict(os.environ, SANDGLASS_PYTHON=str(python))
             done = subprocess.run([program.SANDGLASS, "figures", self.study, "-o", out, "--only", "5"],
-                                  env=environment, text=True, capture_output=True, timeout=120)
+                                  env=environment, text=True, capture_output=True, timeout=400)
             self.assertEqual(done.returncode, program.FAILURE, done.stdout + done.stderr)
             self.assertIn(saying, done.stderr)
             self.assertTrue((out / "fig05.csv").exists() and (out / "report.html").exists())

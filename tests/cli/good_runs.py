@@ -168,23 +168,33 @@ class Again(program.Case):
 class Stopped(program.Case):
     """A run that is stopped while it measures goes on to the same bits."""
 
-    def begin(self, out, *settings):
+    def held(self, out, *settings):
+        """A run that is held while it measures."""
         arguments = [part for setting in (*self.LONGER, *settings) for part in ("--set", setting)]
-        running = subprocess.Popen([program.SANDGLASS, "run", self.tiny, "-o", out, *arguments], text=True,
-                                   stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-        self.addCleanup(running.stderr.close)
-        self.addCleanup(running.kill)
-        for line in running.stderr:
-            if line.startswith("measuring"):
+        while True:
+            running = subprocess.Popen([program.SANDGLASS, "run", self.tiny, "-o", out, *arguments], text=True,
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            self.addCleanup(running.stderr.close)
+            self.addCleanup(running.kill)
+            if not any(line.startswith("measuring") for line in running.stderr):
+                self.fail(f"{out} never came to measuring")
+            if program.hold(running, out):
                 return running
-        self.fail(f"{out} never came to measuring")
+            running.wait(300)  # it was over before it could be held
+            shutil.rmtree(out)
 
     def go_on(self, out):
         arguments = [part for setting in self.LONGER for part in ("--set", setting)]
         self.run_ok("run", self.tiny, "-o", out, *arguments, "--resume")
         return summary(out)["state_hash"]
 
-    # A few seconds of measuring. Elastic and without drive, so that nothing is calibrated and it starts at once.
+    def last_written(self, path):
+        try:
+            return path.stat().st_mtime_ns
+        except FileNotFoundError:
+            return None
+
+    # A second or so of measuring. Elastic and without drive, so that nothing is calibrated and it starts at once.
     LONGER = ("run.collisions=30000", "drive.kind=none", "collision.restitution=1", "output.trajectory_frames=11")
 
     def datasets(self, out):
@@ -198,18 +208,22 @@ class Stopped(program.Case):
         results = self.datasets(self.folder / "whole")
 
         asked = self.folder / "asked"
-        running = self.begin(asked)
+        running = self.held(asked)
         running.send_signal(signal.SIGTERM)
-        self.assertEqual(running.wait(60), 75)
+        running.send_signal(signal.SIGCONT)
+        self.assertEqual(running.wait(300), 75)
         self.assertFalse((asked / "summary.json").exists())
         self.assertEqual(self.go_on(asked), whole)
         self.assertEqual(self.datasets(asked), results)
 
         killed = self.folder / "killed"
-        running = self.begin(killed, "output.checkpoint_seconds=0.05")
-        time.sleep(0.5)
+        running = self.held(killed, "output.checkpoint_seconds=0.05")
+        before = self.last_written(killed / "checkpoint.h5")
+        running.send_signal(signal.SIGCONT)
+        while self.last_written(killed / "checkpoint.h5") in (None, before):  # until there is one of the measurement
+            time.sleep(0.01)
         running.kill()
-        running.wait(60)
+        running.wait(300)
         with h5py.File(killed / "trajectory.h5") as file:  # readable, its first frame written
             self.assertEqual(len(file["particles/all/position/step"]), 11)
             self.assertGreaterEqual(file["particles/all/position/step"][0], 0)

@@ -16,7 +16,7 @@ class Equilibrium(program.Case):
     def test_elastic_disks(self):
         out = self.folder / "elastic"
         settings = [part for setting in ELASTIC for part in ("--set", setting)]
-        self.run_ok("run", self.tiny, "-o", out, *settings, timeout=300)
+        self.run_ok("run", self.tiny, "-o", out, *settings)
         summary = json.loads((out / "summary.json").read_text())
         with h5py.File(out / "observables.h5") as file:
             self.check_momenta(file["structure/velocity"])

@@ -26,17 +26,17 @@ class Damage(program.Case):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.expected, seconds, _ = faults.undisturbed()
+        cls.expected, _, _ = faults.undisturbed()
         cls.scratch = program.tempfile.mkdtemp(prefix="sandglass-faults-")
         cls.addClassCleanup(shutil.rmtree, cls.scratch, ignore_errors=True)
         folder = pathlib.Path(cls.scratch)
         cls.config = faults.write_config(folder)
         # A run in the middle, with two checkpoints.
         cls.half = folder / "half"
-        running = faults.start(cls.config, cls.half)
-        while not (cls.half / "checkpoint.previous.h5").exists() or not (cls.half / "observables.h5").exists():
-            time.sleep(0.02)
+        running = faults.held(lambda: faults.start(cls.config, cls.half), cls.half, "checkpoint.previous.h5",
+                              "observables.h5")
         running.send_signal(signal.SIGTERM)
+        running.send_signal(signal.SIGCONT)
         assert faults.finish(running)[0] == faults.RESUMABLE
 
     def damaged(self, name):
@@ -96,9 +96,7 @@ class Damage(program.Case):
     def test_start_damaged_or_gone(self):
         for name in ("damaged", "gone"):
             out = self.folder / name
-            running = faults.start(self.config, out)
-            while not (out / "checkpoint.h5").exists():
-                time.sleep(0.005)
+            running = faults.held(lambda: faults.start(self.config, out), out, "checkpoint.h5")
             running.kill()
             faults.finish(running)
             if name == "damaged":
@@ -171,7 +169,7 @@ class Damage(program.Case):
         command = [program.SANDGLASS, "run", str(self.config), "-o", str(self.folder / "big")]
         for particles in ("2_000_000", "2_000_000_000"):
             refused = subprocess.run([*command, "--set", f"system.particles={particles}"], preexec_fn=limit, text=True,
-                                     stderr=subprocess.PIPE, timeout=20)
+                                     stderr=subprocess.PIPE, timeout=100)
             self.assertEqual(refused.returncode, faults.BAD_INPUT, refused.stderr)
             self.assertIn("GB of memory", refused.stderr)
             self.assertFalse((self.folder / "big").exists())
@@ -179,10 +177,13 @@ class Damage(program.Case):
     def test_two_runs_in_one_folder(self):
         out = self.folder / "shared"
         first = faults.start(self.config, out)
-        time.sleep(0.3)
+        self.addCleanup(first.kill)
+        first.stdout.readline()  # the preparation has begun: the folder is locked
+        first.send_signal(signal.SIGSTOP)
         code, text = faults.finish(faults.start(self.config, out))
         self.assertEqual(code, faults.BAD_INPUT, text)
         self.assertIn("in use by another run", text)
+        first.send_signal(signal.SIGCONT)
         self.assertEqual(faults.finish(first)[0], faults.DONE)
         self.assertEqual(faults.results(out), self.expected)
 

@@ -10,6 +10,7 @@ import random
 import shutil
 import subprocess
 import tempfile
+import time
 
 import program
 
@@ -51,10 +52,23 @@ def start(config, out, *options, environment=None):
                             env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 
-def finish(running, timeout=120):
+def finish(running, timeout=400):
     """Waits for the end: exit code and all that was printed."""
     text = running.communicate(timeout=timeout)[0]
     return running.returncode, text
+
+
+def held(begin, out, *names):
+    """A run that `begin()` has started in `out`, held (SIGSTOP) when it has written the files `names`, before its end."""
+    while True:
+        running = begin()
+        while running.poll() is None and not all((out / name).exists() for name in names):
+            time.sleep(0.005)
+        if program.hold(running, out):
+            return running
+        code, text = finish(running)  # it was over before it could be held
+        assert code == DONE, text
+        shutil.rmtree(out)
 
 
 def results(out):

@@ -15,6 +15,7 @@ class Kills(program.Case):
     def test_killed_at_random_moments(self):
         expected, seconds, _ = faults.undisturbed()
         config = faults.write_config(self.folder)
+        longest = seconds / 3
         print(f"\nseed {faults.SEED}")
         kills = before_checkpoint = runs = 0
         while kills < 10 * faults.TIMES:
@@ -22,14 +23,16 @@ class Kills(program.Case):
             runs += 1
             while True:
                 running = faults.start(config, out)
-                time.sleep(faults.RANDOM.uniform(0, seconds / 3))
+                time.sleep(faults.RANDOM.uniform(0, longest))
                 running.kill()
                 code, text = faults.finish(running)
                 if code == faults.DONE:
                     break
                 self.assertEqual(code, -9, text)
                 kills += 1
-                before_checkpoint += not (out / "checkpoint.h5").exists()
+                if not (out / "checkpoint.h5").exists():
+                    before_checkpoint += 1
+                    longest *= 1.2  # or else, on a machine that is busier now, it might never come to one
             self.assertEqual(faults.results(out), expected)
             self.assertEqual([], list(out.glob("*.partial")))
             self.assertEqual([], list(out.glob("diagnostic*")))
@@ -47,6 +50,10 @@ class Kills(program.Case):
                 running = faults.start(config, self.folder / f"run{run}", "--max-walltime", f"{limit:.3f}")
                 code, text = faults.finish(running)
                 stops += code == faults.RESUMABLE
+                if code == faults.FAILURE and stops == stops_before:
+                    self.assertIn("was over before the start was prepared", text)
+                    code = faults.RESUMABLE
+                longest *= 1.2  # or else, on a machine that is busier now, it might never come to its end
             self.assertEqual(code, faults.DONE, text)
             self.assertEqual(faults.results(self.folder / f"run{run}"), expected)
             if stops == stops_before:  # the undisturbed run was slow, the machine being busy then
@@ -59,14 +66,11 @@ class Kills(program.Case):
         config = faults.write_config(self.folder)
         for name in ("SIGTERM", "SIGINT", "SIGUSR1"):
             out = self.folder / name
-            running = faults.start(config, out)
-            while not (out / "checkpoint.h5").exists():
-                time.sleep(0.02)
+            running = faults.held(lambda: faults.start(config, out), out, "checkpoint.h5")
             running.send_signal(getattr(signal, name))
-            began = time.monotonic()
+            running.send_signal(signal.SIGCONT)
             code, text = faults.finish(running)
             self.assertEqual(code, faults.RESUMABLE, text)
-            self.assertLess(time.monotonic() - began, 10)
             code, text = faults.finish(faults.start(config, out))
             self.assertEqual(code, faults.DONE, text)
             self.assertEqual(faults.results(out), expected)
@@ -75,18 +79,24 @@ class Kills(program.Case):
         expected, _, _ = faults.undisturbed()
         config = faults.write_config(self.folder)
         out = self.folder / "it's a $(run) \n of \"mine\""
-        running = faults.start(config, out, "--set", "output.checkpoint_seconds=0.04")
-        running.stdout.readline()  # the preparation has begun: there is nothing in the folder yet
-        for _ in range(2):
+
+        def start():
+            running = faults.start(config, out, "--set", "output.checkpoint_seconds=0.04")
+            running.stdout.readline()  # the preparation has begun: there is nothing in the folder yet
+            return running
+
+        def go_on():
+            return subprocess.Popen(["bash", "-c", f'exec "$SANDGLASS" {command}'], text=True,
+                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+        for begin, names in ((start, ()), (go_on, ("checkpoint.h5",))):
+            running = faults.held(begin, out, *names)
             running.send_signal(signal.SIGTERM)
+            running.send_signal(signal.SIGCONT)
             code, text = faults.finish(running)
             self.assertEqual(code, faults.RESUMABLE, text)
             command = text.split("Go on with: sandglass ")[1].rstrip("\n")
-            running = subprocess.Popen(["bash", "-c", f'exec "$SANDGLASS" {command}'], text=True,
-                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-            while not (out / "checkpoint.h5").exists():
-                time.sleep(0.02)
-        code, text = faults.finish(running)
+        code, text = faults.finish(go_on())
         self.assertEqual(code, faults.DONE, text)
         self.assertEqual(faults.results(out), expected)
 
@@ -117,7 +127,9 @@ class Clock(program.Case):
                                     "FAKETIME_NO_CACHE": "1"}
         running = faults.start(config, self.folder / "out", environment=environment)
         while running.poll() is None:
-            clock.write_text(faults.RANDOM.choice(("+0", "-10d", "+10d", "+3s", "-1000d", "+20y")))
+            jump = self.folder / "jump"
+            jump.write_text(faults.RANDOM.choice(("+0", "-10d", "+10d", "+3s", "-1000d", "+20y")))
+            jump.replace(clock)  # never seen empty
             time.sleep(seconds / 20)
         code, text = faults.finish(running)
         self.assertEqual(code, faults.DONE, text)

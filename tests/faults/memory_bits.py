@@ -92,7 +92,6 @@ class MemoryBits(program.Case):
         super().setUp()
         self.config = faults.write_config(self.folder)
         probe = faults.start(self.config, self.folder / "probe")
-        time.sleep(0.5)
         try:
             open(f"/proc/{probe.pid}/mem", "r+b", buffering=0).close()
         except OSError as error:

@@ -39,6 +39,7 @@ std::string describe(const Inspection& inspection) {
 }
 
 void Watch::before_beat(Simulation& simulation) {
+  if (!inspected_) inspect(simulation);  // the sums that the first beats are held against
   if (vigilance_ != Vigilance::every_event) return;
   if (!witness_) witness_ = std::make_unique<Reference>(simulation.state());
   events_.clear();

@@ -160,6 +160,17 @@ TEST_CASE("energy or momentum out of nowhere is found") {
   }
 }
 
+TEST_CASE("the first beats are watched as well") {
+  Simulation run(driven());
+  Watch watch;
+  watch.before_beat(run);
+  State changed = run.state();
+  changed.disks[5].vx = with_bit_flipped(changed.disks[5].vx, 45);
+  Simulation other(changed);
+  other.run_until(0.1);
+  CHECK_THROWS_AS(watch.inspect(other), Violation);
+}
+
 TEST_CASE("a witness agrees with a whole run, over epochs too") {
   for (const DriveKind kind : {DriveKind::pair, DriveKind::single, DriveKind::none}) {
     State start = driven(kind);

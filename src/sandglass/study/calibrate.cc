@@ -69,7 +69,7 @@ void Calibrator::advance_one_beat() {
 }
 
 bool Calibrator::end_window() {
-  if (beats_in_window_ < beats_of_window()) return false;
+  if (!window_over()) return false;
   const auto measured = static_cast<double>(beats_of_window() - beats_before_measuring());
   const auto collisions = static_cast<double>(simulation_.tally().collisions() - collisions_before_);
   const double ratio = goal_.temperature / (temperature_sum_ / measured);

@@ -51,6 +51,7 @@ class Calibrator {
 
   [[nodiscard]] bool done() const { return done_ == 1; }
   void advance_one_beat();
+  [[nodiscard]] bool window_over() const { return beats_in_window_ >= beats_of_window(); }
   /// To be called after each beat: whether it was the last of a window, at which the drive has changed.
   bool end_window();
   [[nodiscard]] const Calibration& result() const { return result_; }

@@ -174,6 +174,8 @@ class CampaignRun {
         fail(point, fmt::format("it was stopped {} times without getting further", most_fruitless));
     } else if (is_running(point.folder)) {
       elsewhere_.push_back(&point);
+    } else if (point.finished()) {  // by another process, which held it when this one came
+      point.done = true;
     } else if (end.signal != 0) {
       fail(point, fmt::format("it was ended by signal {} ({})", end.signal, ::strsignal(end.signal)));
     } else {

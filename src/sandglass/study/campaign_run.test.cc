@@ -121,4 +121,11 @@ TEST_CASE("a point of another process is waited for") {
   CHECK(stage.called() == "312");
 }
 
+TEST_CASE("a point that another process has finished meanwhile is done") {
+  const Stage stage("finish\necho 'in use by another run' >&2\ncase $PWD in *eta=0.60*) exit 2;; esac");
+  const CampaignResult result = stage.run(2);
+  CHECK(result.failed.empty());
+  CHECK(result.progress.done == 3);
+}
+
 TEST_CASE("there is a core") { CHECK(usable_cores() >= 1); }

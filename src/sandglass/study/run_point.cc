@@ -68,6 +68,7 @@ void PointRun::calibrate() {
   while (!calibrator_->done() && !stop_requested()) {
     report_progress(monitor_.progress, "calibrating the drive", calibrator_->fraction());
     watched_beat([this] { calibrator_->advance_one_beat(); });
+    if (calibrator_->window_over()) watched([this] { watch_.inspect(simulation()); });  // the drive is set by it
     if (calibrator_->end_window()) watch_ = Watch(config_.run.self_check);
     checkpoint_now_and_then();
   }
