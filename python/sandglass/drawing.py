@@ -222,17 +222,21 @@ def make_room(axes, share):
 
 
 def draw_inset(axes, inset, family_of):
-    size, room = (0.33, 0.28), (0.47, 0.43)  # of the inset, and with its labels
+    named = [curve for curve in inset["curves"] if curve["role"] == "family"]
+    if len(named) > 3 or family_of and {curve["level"] for curve in named} <= set(family_of):
+        named = []  # the colour bar of the main figure explains them
+    legend = 0.06 if named else 0
+    size, room = (0.33, 0.28), (0.47, 0.43 + legend)  # of the inset, and with its labels
     places = {(1 - room[0], 1 - room[1]): "upper right", (0, 1 - room[1]): "upper left", (1 - room[0], 0): "lower right",
               (0, 0): "lower left"}
     axes.figure.canvas.draw()
     crowded = {corner: crowding(axes, corner, room) for corner in places}
     corner = min(crowded, key=crowded.get)
     if crowded[corner] > 0:
-        make_room(axes, 0.42)
+        make_room(axes, 0.42 + legend)
         corner = (1 - room[0], 1 - room[1])
     left = corner[0] + room[0] - size[0] - (0.035 if corner[0] > 0 else 0)  # the ticks of the main axes are on the left
-    small = axes.inset_axes([left, corner[1] + room[1] - size[1] - 0.03, *size])
+    small = axes.inset_axes([left, corner[1] + room[1] - size[1] - 0.03 - legend, *size])
     small.tick_params(labelsize=5.5, pad=1.5, length=2, which="major")
     small.tick_params(length=1, which="minor")
     set_scales(small, inset)
@@ -243,9 +247,9 @@ def draw_inset(axes, inset, family_of):
     set_ticks(small, inset, True)
     small.set_xlabel(axis_text(inset["x"]), fontsize=6, labelpad=1)
     small.set_ylabel(axis_text(inset["y"]), fontsize=6, labelpad=1)
-    named = [curve for curve in inset["curves"] if curve["role"] == "family"]
-    if named and not (family_of and set(levels) == set(family_of)) and len(named) <= 3:
-        small.legend(fontsize=5, loc="best", handlelength=1, borderaxespad=0.1)
+    if named:
+        small.legend(fontsize=5, loc="lower center", bbox_to_anchor=(0.5, 0.98), ncol=len(named), handlelength=1,
+                     borderaxespad=0.1, columnspacing=0.8, handletextpad=0.4)
 
 
 def draw_panel(axes, figure, heading):

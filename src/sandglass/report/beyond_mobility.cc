@@ -227,7 +227,8 @@ Figure ageing(const Study& study) {
   Figure figure = paper_figure(22, "Ageing",
                                "MSD of the small disks in each interval of the run by itself; t_w is the time from the "
                                "start of the measurement to the middle of the interval. Right: MSD at t = 10 in each "
-                               "interval over its mean.",
+                               "interval over its mean. An interval of one run has no error: its scatter is seen "
+                               "between the intervals.",
                                lag_axis, {"MSD ⟨Δr²⟩", "Rₛ²", true});
   const auto has = [](const StatePoint& p) { return !aged_displacements(p).empty(); };
   const StatePoint* point = shown_point(study, 0.81, 0.9, figure, has);

@@ -311,7 +311,7 @@ Figure fast_scattering(const Study& study) {
   constexpr double k = 3;
   const double restitution = shown_restitution(study, 0.9);
   Figure figure = paper_figure(12, fmt::format("Incoherent scattering, k = 3, ε = {:g}", restitution),
-                               "Small disks, memory on the length 2π/k = 2.1 Rₛ. Dashed: the Gaussian approximation "
+                               "Small disks, memory on the length 2π/k = 2.1 Rₛ. Right, dashed: the Gaussian approximation "
                                "exp(−k²⟨Δr²⟩/4), at some densities.",
                                lag_axis, {"S_inc(3, t)", "", false},
                                "Two-step decay for η ≥ 0.78. The Gaussian approximation holds at all times at low "
@@ -320,9 +320,14 @@ Figure fast_scattering(const Study& study) {
   const Family family = densities_at(study, restitution);
   add_family(figure, family, paper_densities, "S_inc(3, t)",
              [](const StatePoint& p) { return small_curve(p, "self_intermediate_scattering", k); });
-  Figure gaussians = figure;
+  Figure panel = part_of(figure, "b", "With the Gaussian approximation", lag_axis, figure.y);
+  panel.alternative_x = collisions_axis;
+  const Family few = few_of(family, std::array{0.3, 0.72, 0.78, 0.81});
+  add_family(panel, few, {}, "S_inc(3, t)",
+             [](const StatePoint& p) { return small_curve(p, "self_intermediate_scattering", k); });
+  Figure gaussians = panel;
   gaussians.curves.clear();
-  add_family(gaussians, few_of(family, std::array{0.3, 0.72, 0.78, 0.81}), {}, "", [](const StatePoint& p) {
+  add_family(gaussians, few, {}, "", [](const StatePoint& p) {
     auto curve = small_curve(p, "gaussian_approximation", k);
     if (curve) {
       curve->name = fmt::format("η = {:g}, Gaussian", p.packing_fraction());
@@ -331,7 +336,8 @@ Figure fast_scattering(const Study& study) {
     }
     return curve;
   });
-  figure.curves.insert(figure.curves.end(), gaussians.curves.begin(), gaussians.curves.end());
+  panel.curves.insert(panel.curves.end(), gaussians.curves.begin(), gaussians.curves.end());
+  if (!panel.curves.empty()) figure.panels = {std::move(panel)};
   figure.checks = {two_steps(family), gaussian_check(family, false), gaussian_check(family, true)};
   return figure;
 }
