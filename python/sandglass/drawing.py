@@ -200,10 +200,12 @@ def legend_lines(figure):
 
 
 def crowding(axes, corner, size):
-    """How much of the curves lies under an inset at that corner (axes fractions), sampled along the lines."""
+    """How much of curves and bands lies under an inset at that corner (axes fractions), sampled along their lines."""
     count = 0
-    for line in axes.get_lines():
-        points = axes.transAxes.inverted().transform(axes.transData.transform(line.get_xydata()))
+    outlines = [line.get_xydata() for line in axes.get_lines()]
+    outlines += [path.vertices for band in axes.collections for path in band.get_paths()]
+    for outline in outlines:
+        points = axes.transAxes.inverted().transform(axes.transData.transform(outline))
         for (x0, y0), (x1, y1) in zip(points, points[1:]):
             for t in (0, 0.25, 0.5, 0.75):
                 x, y = x0 + t * (x1 - x0), y0 + t * (y1 - y0)
