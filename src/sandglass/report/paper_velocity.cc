@@ -235,8 +235,9 @@ Figure tail_shapes(const Study& study) {
   return figure;
 }
 
-/// The lowest value of a curve.
-Measured lowest(const Curve& curve) {
+/// The lowest value of a curve up to s = 50; what comes back from farther, lost in the noise, is not thrown back.
+Measured lowest(const Curve& whole) {
+  const Curve curve = between(whole, 0, 50);
   const auto at = std::min_element(curve.y.begin(), curve.y.end());
   if (at == curve.y.end() || curve.error.empty()) return {};
   return {*at, curve.error[static_cast<std::size_t>(at - curve.y.begin())]};
