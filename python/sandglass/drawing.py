@@ -254,9 +254,15 @@ def draw_inset(axes, inset, family_of):
                      borderaxespad=0.1, columnspacing=0.8, handletextpad=0.4)
 
 
-def draw_panel(axes, figure, heading):
+def shared_levels(figure, panel):
+    """The levels that give the curves of a panel their colours: those of the whole figure, where a legend names them."""
+    main, own = levels_of(figure), levels_of(panel)
+    shared = len(main) <= len(FEW) and set(own) <= set(main) and figure["family"] == panel["family"]
+    return main if shared else own
+
+
+def draw_panel(axes, figure, levels, heading):
     set_scales(axes, figure)
-    levels = levels_of(figure)
     if figure["map"]:
         draw_map(axes, figure)
     draw_curves(axes, figure, levels)
@@ -286,7 +292,7 @@ def draw(figure):
                                        constrained_layout={"w_pad": 0.08})
         for axes, panel, letter in zip(row[0], panels, "abcdef"):
             title = panel["title"].split(". ", 1)[-1]  # without the number of the figure
-            draw_panel(axes, panel, f"({letter}) {title}" if len(panels) > 1 else "")
+            draw_panel(axes, panel, shared_levels(figure, panel), f"({letter}) {title}" if len(panels) > 1 else "")
         return picture
 
 

@@ -105,17 +105,19 @@ Figure non_gaussian(const Study& study) {
 
 Figure overlap(const Study& study) {
   const Family all = densities_at(study, shown_restitution(study, 0.9)), family = shown_densities(study);
-  Figure figure = paper_figure(20, fmt::format("Overlap and its fluctuations, ε = {:g}", all.fixed),
-                               "Q(t), the part of the small disks that are within 0.6 Rₛ (observe.overlap_length) of "
-                               "where they were. Right: χ₄ = N(⟨Q²⟩ − ⟨Q⟩²), how many move together.",
-                               lag_axis, {"Q(t)", "", false});
+  Figure figure =
+      paper_figure(20, fmt::format("Overlap and its fluctuations, ε = {:g}", all.fixed),
+                   "Q(t), the part of the small disks that are within 0.6 Rₛ (observe.overlap_length) of "
+                   "where they were. Right: χ₄ = N(⟨Q²⟩ − ⟨Q⟩²), how many move together, where it exceeds its "
+                   "error.",
+                   lag_axis, {"Q(t)", "", false});
   figure.alternative_x = collisions_axis;
   add_family(figure, family, {}, "Q(t)", [](const StatePoint& p) { return small_curve(p, "overlap"); });
   Figure panel = part_of(figure, "b", "Dynamic susceptibility", lag_axis, {"χ₄(t)", "", true});
   panel.alternative_x = collisions_axis;
   add_family(panel, family, {}, "χ₄", [](const StatePoint& p) {
     auto curve = small_curve(p, "susceptibility");  // before anything moves it is nothing: a long way down
-    if (curve) curve = points_where(*curve, [](double, double y) { return y > 0.01; });
+    if (curve) curve = points_known(*curve, [](double y, double error) { return y > 0.01 && error < y; });
     return curve;
   });
   if (!panel.curves.empty()) figure.panels = {std::move(panel)};

@@ -310,12 +310,13 @@ Check two_steps(const Family& family) {
 Figure fast_scattering(const Study& study) {
   constexpr double k = 3;
   const double restitution = shown_restitution(study, 0.9);
-  Figure figure = paper_figure(12, fmt::format("Incoherent scattering, k = 3, ε = {:g}", restitution),
-                               "Small disks, memory on the length 2π/k = 2.1 Rₛ. Right, dashed: the Gaussian approximation "
-                               "exp(−k²⟨Δr²⟩/4), at some densities.",
-                               lag_axis, {"S_inc(3, t)", "", false},
-                               "Two-step decay for η ≥ 0.78. The Gaussian approximation holds at all times at low "
-                               "density, only at short times at the highest.");
+  Figure figure =
+      paper_figure(12, fmt::format("Incoherent scattering, k = 3, ε = {:g}", restitution),
+                   "Small disks, memory on the length 2π/k = 2.1 Rₛ. Right, dashed: the Gaussian approximation "
+                   "exp(−k²⟨Δr²⟩/4), at some densities.",
+                   lag_axis, {"S_inc(3, t)", "", false},
+                   "Two-step decay for η ≥ 0.78. The Gaussian approximation holds at all times at low "
+                   "density, only at short times at the highest.");
   figure.alternative_x = collisions_axis;
   const Family family = densities_at(study, restitution);
   add_family(figure, family, paper_densities, "S_inc(3, t)",

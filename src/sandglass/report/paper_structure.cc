@@ -86,8 +86,7 @@ Check split_check(const Family& family, const std::string& pair) {
   double two_peaks = INFINITY;
   for (const StatePoint* point : family.points) {
     const auto curve = radial(*point, pair);
-    const Measured ratio =
-        curve ? splitting(*curve, contact_of(*point, pair), across_of(*point, pair)) : Measured{};
+    const Measured ratio = curve ? splitting(*curve, contact_of(*point, pair), across_of(*point, pair)) : Measured{};
     if (point->packing_fraction() < 0.45 || !(ratio.error < too_noisy)) continue;
     known.push_back({point->packing_fraction(), ratio});
     if (ratio.value < -significant_extreme * ratio.error) two_peaks = std::min(two_peaks, known.back().argument);

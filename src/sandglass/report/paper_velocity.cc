@@ -116,14 +116,8 @@ Measured tail_exponent(const Curve& curve) {
 std::optional<Curve> velocity_exponent(const StatePoint& point) {
   const auto curve = velocity_curve(point);
   if (!curve) return std::nullopt;
-  const Curve slope = local_exponent(significant_part(*curve), std::sqrt(3.16));
-  Curve known{.name = ""};
-  for (std::size_t i = 0; i < slope.x.size(); ++i) {
-    if (slope.error.empty() || !(slope.error[i] < 0.3)) continue;
-    known.x.push_back(slope.x[i]), known.y.push_back(slope.y[i]), known.error.push_back(slope.error[i]);
-    known.alternative_x.push_back(slope.alternative_x[i]);
-  }
-  return known;
+  return points_known(local_exponent(significant_part(*curve), std::sqrt(3.16)),
+                      [](double, double error) { return error < 0.3; });
 }
 
 Figure tails(const Study& study) {
@@ -131,8 +125,7 @@ Figure tails(const Study& study) {
   Figure figure = paper_figure(2, "Velocity autocorrelation, ε = 0.7",
                                "Φ(s)/Φ(0) of the small disks up to where it is twice its error. Right: its local "
                                "exponent over half a decade, where known to 0.3; −1 (dotted) is a tail 1/s.",
-                               collisions_axis,
-                               {"Φ(s) / Φ(0)", "", true},
+                               collisions_axis, {"Φ(s) / Φ(0)", "", true},
                                "Long-time tails, close to 1/s: slower than exponential at all densities below the "
                                "onset of backscattering.");
   figure.alternative_x = lag_axis;
