@@ -59,6 +59,7 @@ class BruteForce(Frames):
             self.assertTrue(numpy.isnan(group["mean_square_displacement/collisions"][:]).all())
             self.check(group["mean_square_displacement"], *mean_and_error(msd))
             self.close(group["mean_square_displacement/interval_value"][:], msd)
+            self.check_slopes(group["diffusion_coefficient"], msd)
             counts = [len(self.pairs(lag)) * members.sum() for lag in lags()]
             numpy.testing.assert_array_equal(group["mean_square_displacement/count"][:], counts)
             self.check(group["non_gaussian"], *jackknife(lambda m, f, n: f / (2 * m**2) - 1, msd, fourth))
@@ -80,6 +81,16 @@ class BruteForce(Frames):
                 self.close(group["self_intermediate_scattering/error"][i], error)
                 self.close(group["self_intermediate_scattering/interval_value"][:, i], s)
         self.close(dynamics["waiting_time"][:], STEP * STEPS * (numpy.arange(BLOCKS) + 0.5))
+
+    def check_slopes(self, group, msd):
+        """D(t) = (1/4) d MSD / dt between the outermost lags within a factor of 1.5."""
+        time = STEP * numpy.array(lags())
+        for i, t in enumerate(time):
+            near, = numpy.nonzero((time >= t / 1.5 * (1 - 1e-9)) & (time <= t * 1.5 * (1 + 1e-9)))
+            value, error = math.nan, math.nan
+            if len(near) > 1:  # of a mean the jackknife error is the standard error
+                value, error = mean_and_error((msd[:, near[-1]] - msd[:, near[0]]) / (4 * (time[near[-1]] - time[near[0]])))
+            self.close([group["value"][i], group["error"][i]], [value, error])
 
     def check_gaussian(self, dynamics):
         """exp(-k^2 <dr^2> / 4), averaged over the wave vectors of k; its error is that of the MSD, carried on."""
