@@ -179,6 +179,26 @@ TEST_CASE("a peak counts only where the curve comes down behind it, and disks ge
   CHECK(outcome({with_peak(0.5, 5, 1), with_peak(0.6, 2, 1)}) == Outcome::not_enough_data);  // no cages there
 }
 
+TEST_CASE("fast and slow disks are judged at the lag by which they were told apart") {
+  StatePoint p = point(0.8, 0.9);
+  p.config.observe.selection_time = 1000;
+  const auto put = [&](const std::string& speed, std::vector<double> values) {
+    const std::string group = "/dynamics/small/mobility/" + speed + "/";
+    for (const auto& [name, column] : {std::pair{"time", std::vector<double>{1, 800, 975, 1190}},
+                                       {"collisions", {1, 2, 3, 4}},
+                                       {"value", std::move(values)},
+                                       {"error", {0.01, 0.01, 0.01, 0.01}}})
+      p.results.push_back({group + name, {4}, column, ""});
+  };
+  put("fastest", {0.1, 8, 9, 9});
+  put("slowest", {0.1, 0.5, 0.05, 1});
+  const Figure f = figure(paper_figures(study_of({p})), 13);
+  REQUIRE(f.checks.size() == 2);
+  CHECK(f.checks[0].outcome == Outcome::agrees);
+  CHECK(f.checks[1].outcome == Outcome::agrees);
+  CHECK(f.checks[1].finding.find("t = 975") != std::string::npos);
+}
+
 TEST_CASE("energy that goes in and does not come out is no steady state") {
   StatePoint p = point(0.7, 0.9);
   p.numbers["energy/injected"] = {10, 0}, p.numbers["energy/dissipated"] = {10.001, 0},
