@@ -200,10 +200,12 @@ def legend_lines(figure):
 
 
 def crowding(axes, corner, size):
-    """How much of the curves lies under an inset at that corner (axes fractions), sampled along the lines."""
+    """How much of curves and bands lies under an inset at that corner (axes fractions), sampled along their lines."""
     count = 0
-    for line in axes.get_lines():
-        points = axes.transAxes.inverted().transform(axes.transData.transform(line.get_xydata()))
+    outlines = [line.get_xydata() for line in axes.get_lines()]
+    outlines += [path.vertices for band in axes.collections for path in band.get_paths()]
+    for outline in outlines:
+        points = axes.transAxes.inverted().transform(axes.transData.transform(outline))
         for (x0, y0), (x1, y1) in zip(points, points[1:]):
             for t in (0, 0.25, 0.5, 0.75):
                 x, y = x0 + t * (x1 - x0), y0 + t * (y1 - y0)
@@ -222,17 +224,21 @@ def make_room(axes, share):
 
 
 def draw_inset(axes, inset, family_of):
-    size, room = (0.33, 0.28), (0.47, 0.43)  # of the inset, and with its labels
+    named = [curve for curve in inset["curves"] if curve["role"] == "family"]
+    if len(named) > 3 or family_of and {curve["level"] for curve in named} <= set(family_of):
+        named = []  # the colour bar of the main figure explains them
+    legend = 0.06 if named else 0
+    size, room = (0.33, 0.28), (0.47, 0.43 + legend)  # of the inset, and with its labels
     places = {(1 - room[0], 1 - room[1]): "upper right", (0, 1 - room[1]): "upper left", (1 - room[0], 0): "lower right",
               (0, 0): "lower left"}
     axes.figure.canvas.draw()
     crowded = {corner: crowding(axes, corner, room) for corner in places}
     corner = min(crowded, key=crowded.get)
     if crowded[corner] > 0:
-        make_room(axes, 0.42)
+        make_room(axes, 0.42 + legend)
         corner = (1 - room[0], 1 - room[1])
     left = corner[0] + room[0] - size[0] - (0.035 if corner[0] > 0 else 0)  # the ticks of the main axes are on the left
-    small = axes.inset_axes([left, corner[1] + room[1] - size[1] - 0.03, *size])
+    small = axes.inset_axes([left, corner[1] + room[1] - size[1] - 0.03 - legend, *size])
     small.tick_params(labelsize=5.5, pad=1.5, length=2, which="major")
     small.tick_params(length=1, which="minor")
     set_scales(small, inset)
@@ -243,14 +249,20 @@ def draw_inset(axes, inset, family_of):
     set_ticks(small, inset, True)
     small.set_xlabel(axis_text(inset["x"]), fontsize=6, labelpad=1)
     small.set_ylabel(axis_text(inset["y"]), fontsize=6, labelpad=1)
-    named = [curve for curve in inset["curves"] if curve["role"] == "family"]
-    if named and not (family_of and set(levels) == set(family_of)) and len(named) <= 3:
-        small.legend(fontsize=5, loc="best", handlelength=1, borderaxespad=0.1)
+    if named:
+        small.legend(fontsize=5, loc="lower center", bbox_to_anchor=(0.5, 0.98), ncol=len(named), handlelength=1,
+                     borderaxespad=0.1, columnspacing=0.8, handletextpad=0.4)
 
 
-def draw_panel(axes, figure, heading):
+def shared_levels(figure, panel):
+    """The levels that give the curves of a panel their colours: those of the whole figure, where a legend names them."""
+    main, own = levels_of(figure), levels_of(panel)
+    shared = len(main) <= len(FEW) and set(own) <= set(main) and figure["family"] == panel["family"]
+    return main if shared else own
+
+
+def draw_panel(axes, figure, levels, heading):
     set_scales(axes, figure)
-    levels = levels_of(figure)
     if figure["map"]:
         draw_map(axes, figure)
     draw_curves(axes, figure, levels)
@@ -280,7 +292,7 @@ def draw(figure):
                                        constrained_layout={"w_pad": 0.08})
         for axes, panel, letter in zip(row[0], panels, "abcdef"):
             title = panel["title"].split(". ", 1)[-1]  # without the number of the figure
-            draw_panel(axes, panel, f"({letter}) {title}" if len(panels) > 1 else "")
+            draw_panel(axes, panel, shared_levels(figure, panel), f"({letter}) {title}" if len(panels) > 1 else "")
         return picture
 
 

@@ -21,6 +21,7 @@ class BruteForce(Frames):
             self.check_dynamics(file["dynamics"])
             self.check_heterogeneity(file["dynamics"])
             self.check_structure(file["structure"])
+            self.check_gaussian(file["dynamics"])
             temperatures = file["timeseries/intervals/temperature_all"][:]
         velocity = relative(self.velocity)
         kinetic = (MASS[:, None] * velocity**2).sum(axis=2).mean(axis=1) / 2
@@ -28,6 +29,7 @@ class BruteForce(Frames):
         self.close(temperatures, [kinetic[b * STEPS:(b + 1) * STEPS].mean() for b in range(BLOCKS)])
         summary = json.loads((out / "summary.json").read_text())
         self.assertAlmostEqual(summary["packing_fraction"], math.pi * (RADIUS**2).sum() / LENGTH**2, places=12)
+        self.check_times(summary)
         for key in ("seed", "kicks", "momentum", "collisions", "state_hash", "stationary"):
             self.assertNotIn(key, summary)
 
@@ -57,12 +59,14 @@ class BruteForce(Frames):
             self.assertTrue(numpy.isnan(group["mean_square_displacement/collisions"][:]).all())
             self.check(group["mean_square_displacement"], *mean_and_error(msd))
             self.close(group["mean_square_displacement/interval_value"][:], msd)
+            self.check_slopes(group["diffusion_coefficient"], msd)
             counts = [len(self.pairs(lag)) * members.sum() for lag in lags()]
             numpy.testing.assert_array_equal(group["mean_square_displacement/count"][:], counts)
             self.check(group["non_gaussian"], *jackknife(lambda m, f, n: f / (2 * m**2) - 1, msd, fourth))
             self.close(group["non_gaussian/interval_value"][:], fourth / (2 * msd**2) - 1)
             vacf = self.by_block(lambda a, b: (v[a] * v[b])[members].sum(axis=1).mean())
             self.check(group["velocity_autocorrelation"], *mean_and_error(vacf))
+            self.close(group["velocity_autocorrelation/interval_value"][:], vacf)
             running = self.by_block(lambda a, b: (v[a] * (r[b] - r[a]))[members].sum(axis=1).mean() / 2)
             self.check(group["running_diffusion"], *mean_and_error(running))
             self.close(group["running_diffusion/interval_value"][:], running)
@@ -77,6 +81,53 @@ class BruteForce(Frames):
                 self.close(group["self_intermediate_scattering/error"][i], error)
                 self.close(group["self_intermediate_scattering/interval_value"][:, i], s)
         self.close(dynamics["waiting_time"][:], STEP * STEPS * (numpy.arange(BLOCKS) + 0.5))
+
+    def check_slopes(self, group, msd):
+        """D(t) = (1/4) d MSD / dt between the outermost lags within a factor of 1.5."""
+        time = STEP * numpy.array(lags())
+        for i, t in enumerate(time):
+            near, = numpy.nonzero((time >= t / 1.5 * (1 - 1e-9)) & (time <= t * 1.5 * (1 + 1e-9)))
+            value, error = math.nan, math.nan
+            if len(near) > 1:  # of a mean the jackknife error is the standard error
+                value, error = mean_and_error((msd[:, near[-1]] - msd[:, near[0]]) / (4 * (time[near[-1]] - time[near[0]])))
+            self.close([group["value"][i], group["error"][i]], [value, error])
+
+    def check_gaussian(self, dynamics):
+        """exp(-k^2 <dr^2> / 4), averaged over the wave vectors of k; its error is that of the MSD, carried on."""
+        for name in GROUPS:
+            msd = dynamics[name]["mean_square_displacement"]
+            for i, wavenumber in enumerate(WAVENUMBERS):
+                squares = (2 * math.pi / LENGTH) ** 2 * (shell(wavenumber) ** 2).sum(axis=1)
+                terms = numpy.exp(-squares * msd["value"][:][:, None] / 4)
+                self.close(dynamics[name]["gaussian_approximation/value"][i], terms.mean(axis=1))
+                self.close(dynamics[name]["gaussian_approximation/error"][i],
+                           (terms * squares / 4).mean(axis=1) * msd["error"][:])
+
+    def check_times(self, summary):
+        """Numbers read off the curves, with jackknife errors: exponent of the MSD, t(MSD = 1), tau(k)."""
+        r, time = relative(self.position), STEP * numpy.array(lags())
+        fitted = (time >= 1) & (time <= 10)
+        exponent = lambda msd, _: numpy.polyfit(numpy.log(time[fitted]), numpy.log(msd[fitted]), 1)[0]
+
+        def passage(y, level):
+            """Where y first passes the level from below, linear in ln t."""
+            above = numpy.argmax(y >= level)
+            self.assertGreater(above, 0)
+            part = (level - y[above - 1]) / (y[above] - y[above - 1])
+            return math.exp(math.log(time[above - 1]) + part * math.log(time[above] / time[above - 1]))
+
+        k = 2 * math.pi / LENGTH * shell(WAVENUMBERS[1])
+        for name in ("small", "big"):
+            members, numbers = GROUPS[name], summary["relaxation_time"][f"{WAVENUMBERS[1]:g}"]
+            msd = self.by_block(lambda a, b: ((r[b] - r[a])[members] ** 2).sum(axis=1).mean())
+            s = self.by_block(lambda a, b: numpy.cos((r[b] - r[a])[members] @ k.T).mean())
+            found = summary["msd_exponent"][name]
+            self.close([found["value"], found["error"]], jackknife(exponent, msd))
+            self.close([summary["msd_unit_time"][name], summary["errors"]["msd_unit_time_" + name]],
+                       jackknife(lambda m, _: passage(numpy.log(m), 0), msd))
+            self.close([numbers[name], numbers["error" if name == "small" else "big_error"]],
+                       jackknife(lambda m, _: passage(-m, -0.5), s))
+        self.assertIsNone(summary["relaxation_time"][f"{WAVENUMBERS[0]:g}"]["small"])  # S stays above 1/2
 
     def check(self, group, value, error, scale=1.0):
         self.close(group["value"][:], value, scale)
@@ -195,8 +246,12 @@ class BruteForce(Frames):
         for i in range(len(r)):
             here = bins == i
             numpy.testing.assert_equal(order["correlation/count"][i], here.sum())
-            if here.any():
-                self.close(order["correlation/value"][i], products[here].mean())
+            if not here.any():
+                continue
+            self.close(order["correlation/value"][i], products[here].mean())
+            pairs, sums = ([x.reshape(20, -1).sum(axis=1) for x in (here.astype(float), products * here)])
+            if (pairs < here.sum()).all():  # leaving out any block leaves pairs
+                self.close(order["correlation/error"][i], jackknife(lambda n, total, _: total / n, pairs, sums)[1])
 
     def check_momenta(self, velocity):
         r, v = self.position, relative(self.velocity)

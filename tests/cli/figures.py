@@ -75,6 +75,22 @@ class Figures(program.Case):
             # Interpolated between lags 21 % apart, straight in logarithms: the curvature of the law leaves 1 % or less.
             self.assertAlmostEqual(synthetic_study.displacement(0.72, eps, t), 1, delta=0.02)
 
+    def test_local_exponent_of_the_tail(self):
+        rows = [row for row in rows_of(self.study / "figures" / "fig02.csv")
+                if row["part"] == "fig02b" and row["curve"] == "η = 0.3" and 10 < float(row["x"]) < 100]
+        self.assertGreater(len(rows), 8)
+        for row in rows:  # the made-up tail is s^2 / (1 + s^2)^1.5: -1 + 3 / s^2
+            self.assertLess(abs(float(row["y"]) + 1), 5 * float(row["error"]) + 0.03)
+
+    def test_diffusion_by_both_methods_over_each_other(self):
+        rows = rows_of(self.study / "figures" / "fig10.csv")
+        of = lambda part, curve: {float(row["x"]): float(row["y"]) for row in rows
+                                  if row["part"] == part and row["curve"] == curve}
+        slope, area, ratio = of("fig10", "ε = 0.7"), of("fig10", "ε = 0.7, VACF"), of("fig10b", "ε = 0.7")
+        self.assertGreater(len(ratio), 2)
+        for eta, value in ratio.items():
+            self.assertAlmostEqual(value, area[eta] / slope[eta], places=6)
+
     def test_ageing_keeps_the_intervals_apart(self):
         rows = [row for row in rows_of(self.study / "figures" / "fig22.csv") if row["part"] == "fig22b"]
         for eta, step in ((0.78, 0), (0.8, 0.1)):

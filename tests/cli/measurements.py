@@ -23,6 +23,7 @@ class Equilibrium(program.Case):
             self.check_contacts(summary)
             self.check_flows(file["timeseries/intervals"], summary)
             self.check_diffusion(summary)
+            self.check_methods(file["dynamics"], summary)
             self.assertEqual(file["dynamics/waiting_time"].shape, (10,))
             self.assertEqual(file["dynamics/small/self_intermediate_scattering/interval_value"].shape[:2], (10, 2))
 
@@ -54,6 +55,20 @@ class Equilibrium(program.Case):
         self.assertAlmostEqual(intervals["compressibility_factor"][:].mean(), summary["compressibility_factor"], places=10)
         for name in ("injected", "dissipated"):  # 2^-53 per collision, in either direction
             self.assertLess(abs(intervals[name][:]).max(), 1e-12)
+
+    def check_methods(self, dynamics, summary):
+        """D by both methods from the curves of the intervals, with jackknife errors: the numbers of the summary."""
+        for group in ("small", "big", "all"):
+            msd, running = (dynamics[group][name] for name in ("mean_square_displacement", "running_diffusion"))
+            time, squares, d = msd["time"][:], msd["interval_value"][:], summary["diffusion"][group]
+            at = d["at_collisions"] / summary["collision_rate"]
+            first = numpy.argmax(time >= at / 1.5 * (1 - 1e-9))  # the slope is that over a factor of 1.5 to both sides
+            slopes = (squares[:, -1] - squares[:, first]) / (4 * (time[-1] - time[first])) / summary["collision_rate"]
+            areas = running["interval_value"][:, -1] / summary["collision_rate"]
+            for values, value, error in ((slopes, "from_msd", "error"), (areas, "from_vacf", "vacf_error")):
+                # Of a mean the jackknife error is the standard error.
+                self.assertAlmostEqual(d[value] / values.mean(), 1, places=9)
+                self.assertAlmostEqual(d[error] / (values.std(ddof=1) / math.sqrt(len(values))), 1, places=7)
 
     def check_diffusion(self, summary):
         for group in ("small", "big", "all"):

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sandglass/observe/correlator.h"
+#include "sandglass/observe/fit.h"
 #include "sandglass/observe/van_hove.h"
 
 namespace sandglass {
@@ -49,6 +50,14 @@ IntervalSeries non_gaussian_by_interval(const IntervalSeries& square, const Inte
   return series;
 }
 
+// D = (1/4) d MSD / dt at every lag.
+Curve slopes(const IntervalSeries& displacements) {
+  Curve curve;
+  for (std::size_t lag = 1; lag < displacements.time.size(); ++lag)
+    curve.append(diffusion_coefficient(displacements, displacements.time[lag]));
+  return curve;
+}
+
 // chi_4 = N n / (n - 1) (<Q^2> - <Q>^2) over n pairs of moments: the variance that independent ones would have,
 // unbiased.
 Curve susceptibility(const IntervalSeries& overlap, const IntervalSeries& squared, std::size_t disks,
@@ -84,6 +93,7 @@ class Correlator::Results {
     add_series("mean_square_displacement", displacements, "R_s^2");
     add("non_gaussian", non_gaussian(displacements, fourth), "");
     add_intervals("non_gaussian", {non_gaussian_by_interval(displacements, fourth)}, "");
+    add("diffusion_coefficient", slopes(displacements), "R_s^2/t");
     add_series("cage_relative_displacement", self_.cage_relative_displacement(group_), "R_s^2", 1);
     add_series("running_diffusion", self_.running_diffusion(group_), "R_s^2/t");
     append_velocity();

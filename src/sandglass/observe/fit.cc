@@ -61,28 +61,6 @@ Estimate passage_time(const IntervalSeries& series, double level) {
   });
 }
 
-MinimalExponent minimal_exponent(const IntervalSeries& series, double width) {
-  MinimalExponent minimum;
-  if (series.intervals == 0) return minimum;
-  double lowest = std::numeric_limits<double>::infinity();
-  LagRange where{0, 0};
-  for (std::size_t first = 1; first < series.time.size(); ++first) {
-    const double t1 = series.time[first], t2 = t1 * width;
-    if (t2 > series.time.back() * (1 + 1e-9)) break;
-    const LagRange range = lags_within(series, t1, t2);
-    const double slope = log_slope(series, range, no_interval);
-    if (slope < lowest) {
-      lowest = slope;
-      where = range;
-    }
-  }
-  if (where.last == 0) return minimum;
-  minimum.exponent =
-      jackknife(series.intervals, [&](std::size_t left_out) { return log_slope(series, where, left_out); });
-  minimum.time = std::sqrt(series.time[where.first] * series.time[where.last - 1]);
-  return minimum;
-}
-
 Estimate diffusion_coefficient(const IntervalSeries& series, double t, double spread) {
   const LagRange range = lags_within(series, t / spread, t * spread);
   if (series.intervals == 0 || range.last - range.first < 2) return {};

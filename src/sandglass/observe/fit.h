@@ -15,14 +15,6 @@ Estimate power_law_exponent(const IntervalSeries& series, double t1, double t2);
 /// does not: then the error is NaN).
 Estimate passage_time(const IntervalSeries& series, double level);
 
-/// Smallest exponent over all windows [t, width * t] inside the series, and the middle (geometric) of that window. The
-/// error is that of the exponent in this window.
-struct MinimalExponent {
-  Estimate exponent;
-  double time = 0;
-};
-MinimalExponent minimal_exponent(const IntervalSeries& series, double width = 3.16);
-
 /// D = (1/4) d MSD / dt at t: difference quotient between the outermost lags inside [t / spread, t * spread].
 Estimate diffusion_coefficient(const IntervalSeries& series, double t, double spread = 1.5);
 

@@ -117,7 +117,9 @@ Estimate velocity_correlation_length(const IntervalSeries& transverse, double bo
   };
   const Estimate height = jackknife(transverse.intervals, [&](std::size_t left_out) { return best(left_out).second; });
   if (!(std::fabs(height.value) > 3 * height.error)) return {nothing, nothing};
-  return jackknife(transverse.intervals, [&](std::size_t left_out) { return best(left_out).first; });
+  const Estimate xi = jackknife(transverse.intervals, [&](std::size_t left_out) { return best(left_out).first; });
+  const bool inside = xi.value > 1.001 && xi.value < 0.999 * longest;  // ends are met to rounding
+  return {xi.value, inside ? xi.error : nothing};
 }
 
 }  // namespace sandglass

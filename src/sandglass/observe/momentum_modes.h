@@ -25,8 +25,8 @@ MomentumStructure momentum_structure(const Snapshot& snapshot, const Population&
 /// The length xi over which momenta are correlated: least squares of a + b / (1 + k^2 xi^2) (Ornstein and Zernike) to
 /// the transverse structure factor at k <= 1 / R_s, all shells weighing alike; xi is looked for between 1 R_s and L /
 /// (2 pi). Kicks that conserve momentum leave a plateau below k = 1 / xi; single ones a divergence 1/k^2, xi then is
-/// the longest. Error by jackknife over the intervals (blocks of frames). NaN where nothing is correlated: |b| below
-/// three errors.
+/// the longest. Error by jackknife over the intervals (blocks of frames), NaN where xi is an end of that range. Both
+/// NaN where nothing is correlated: |b| below three errors.
 Estimate velocity_correlation_length(const IntervalSeries& transverse, double box_length);
 
 }  // namespace sandglass

@@ -81,7 +81,8 @@ TEST_CASE("independent velocities: T at every wavenumber, in both directions, an
   CHECK(std::isnan(velocity_correlation_length(transverse, 60).value));
 }
 
-TEST_CASE("the correlation length of a given Lorentzian is found, with its error") {
+/// Twenty intervals of a Lorentzian of correlation length `xi`, with noise of 2 % of T, in a box of side 400.
+IntervalSeries lorentzian(double xi) {
   IntervalSeries series;
   for (const WaveShell& shell : momentum_shells(400, 2.5)) series.time.push_back(shell.wavenumber);
   series.totals.resize(series.time.size());
@@ -90,12 +91,25 @@ TEST_CASE("the correlation length of a given Lorentzian is found, with its error
     for (std::size_t k = 0; k < series.time.size(); ++k) {
       const auto words = random_words(9, Stream::probe, i, k);
       const double q = series.time[k], noise = 0.02 * gaussian_pair(words[0], words[1])[0];
-      series.means.push_back(1 - 0.4 / (1 + q * q * 7 * 7) + noise);
+      series.means.push_back(1 - 0.4 / (1 + q * q * xi * xi) + noise);
       series.totals[k] += series.means.back();
     }
   }
-  const Estimate xi = velocity_correlation_length(series, 400);
+  return series;
+}
+
+TEST_CASE("the correlation length of a given Lorentzian is found, with its error") {
+  const Estimate xi = velocity_correlation_length(lorentzian(7), 400);
   CHECK(xi.error < 0.5);
   // The grid of trial lengths is as fine as 2 %.
   CHECK(std::fabs(xi.value - 7) < 4.5 * xi.error + 0.02 * 7);
+}
+
+TEST_CASE("a correlation length beyond the box, or below a radius, has no error") {
+  const Estimate longest = velocity_correlation_length(lorentzian(100), 400),
+                 shortest = velocity_correlation_length(lorentzian(0.3), 400);
+  CHECK(longest.value == doctest::Approx(400 / (2 * std::numbers::pi)));
+  CHECK(shortest.value == doctest::Approx(1));
+  CHECK(std::isnan(longest.error));
+  CHECK(std::isnan(shortest.error));
 }

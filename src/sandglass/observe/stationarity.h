@@ -5,16 +5,16 @@
 
 namespace sandglass {
 
-/// Straight line through one value per interval, by least squares.
+/// Straight line through one value per interval, or part of it, by least squares.
 struct Trend {
   double mean = 0;
-  double drift = 0;        ///< slope times the length of the stretch: change from its first to its last interval
-  double drift_error = 0;  ///< standard error from the residuals; the intervals are taken as independent
+  double drift = 0;        ///< slope times the length of the stretch: change from its first to its last value
+  double drift_error = 0;  ///< standard error from the residuals; the values are taken as independent
 };
 Trend trend(std::span<const double> values);
 
 /// The verdict on temperature and collision rate. A quantity drifts when its trend is both significant
-/// (|drift| > 3 drift_error) and relevant (|drift| > relevant * mean). Fewer than 5 intervals leave it undecided.
+/// (|drift| > 3 drift_error) and relevant (|drift| > relevant * mean). Fewer than 5 values leave it undecided.
 struct Stationarity {
   bool decided = false;
   bool stationary = false;  ///< false as well when undecided

@@ -1,5 +1,6 @@
 #include "sandglass/observe/thermodynamics.h"
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -72,7 +73,12 @@ std::vector<Dataset> Timeseries::results() const {
 }
 
 IntervalAverages::IntervalAverages(const MeasurementPlan& plan, const Population& population)
-    : plan_(plan), population_(population), sums_(plan.intervals * groups.size()), boundaries_(plan.intervals * 2) {}
+    : plan_(plan), population_(population) {
+  constexpr std::uint64_t wanted = 10;
+  parts_ = std::min((wanted + plan.intervals - 1) / plan.intervals, plan.temperature_samples);
+  sums_.resize(plan.intervals * parts_ * groups.size());
+  boundaries_.resize(plan.intervals * (parts_ + 1));
+}
 
 double IntervalAverages::next_sample() const {
   if (interval_ == plan_.intervals && taken_ > 0) return std::numeric_limits<double>::infinity();
@@ -83,15 +89,16 @@ double IntervalAverages::next_sample() const {
 
 void IntervalAverages::sample(const Frame& frame) {
   if (next_sample() == std::numeric_limits<double>::infinity()) return;
-  if (taken_ == 0 && interval_ > 0) boundaries_[2 * interval_ - 1] = frame.collisions_per_disk;
+  if (taken_ == 0 && interval_ > 0) boundaries_[interval_ * (parts_ + 1) - 1] = frame.collisions_per_disk;
   if (interval_ == plan_.intervals) {
     taken_ = 1;
     return;
   }
-  if (taken_ == 0) boundaries_[2 * interval_] = frame.collisions_per_disk;
+  const std::uint64_t part = taken_ * parts_ / plan_.temperature_samples;
+  if (taken_ == first_sample(part)) boundaries_[interval_ * (parts_ + 1) + part] = frame.collisions_per_disk;
   take_snapshot(frame, population_, now_);
   const Temperatures t = temperatures(now_, population_);
-  ExactSum* sums = &sums_[interval_ * groups.size()];
+  ExactSum* sums = &sums_[(interval_ * parts_ + part) * groups.size()];
   sums[static_cast<std::size_t>(Group::all)].add(t.all);
   sums[static_cast<std::size_t>(Group::small)].add(t.small);
   sums[static_cast<std::size_t>(Group::big)].add(t.big);
@@ -105,7 +112,7 @@ void IntervalAverages::sample(const Frame& frame) {
 std::vector<std::size_t> IntervalAverages::finished() const {
   std::vector<std::size_t> list;
   const std::size_t own = taken_ > 0 || interval_ == 0 ? interval_ : interval_ - 1;
-  for (std::size_t i = 0; i < boundaries_.size() / 2; ++i) {
+  for (std::size_t i = 0; i < boundaries_.size() / (parts_ + 1); ++i) {
     if (i < own || i >= plan_.intervals) list.push_back(i);
   }
   return list;
@@ -117,9 +124,9 @@ void IntervalAverages::merge(const IntervalAverages& other) {
         "Two runs measured by different plans or with different disks cannot be merged; merge runs of one "
         "configuration that differ in their seed alone.");
   for (const std::size_t i : other.finished()) {
-    for (std::size_t group = 0; group < groups.size(); ++group) sums_.push_back(other.sums_[i * groups.size() + group]);
-    boundaries_.push_back(other.boundaries_[2 * i]);
-    boundaries_.push_back(other.boundaries_[2 * i + 1]);
+    for (std::size_t part = 0; part < parts_; ++part)
+      for (const Group group : groups) sums_.push_back(other.sum(i, part, group));
+    for (std::size_t part = 0; part <= parts_; ++part) boundaries_.push_back(other.collisions(i, part));
   }
 }
 
@@ -134,8 +141,9 @@ bool IntervalAverages::valid() const {
 std::vector<double> IntervalAverages::interval_temperatures(Group group) const {
   std::vector<double> values;
   for (const std::size_t i : finished()) {
-    const ExactSum& sum = sums_[i * groups.size() + static_cast<std::size_t>(group)];
-    values.push_back(sum.value() / static_cast<double>(plan_.temperature_samples));
+    ExactSum total;
+    for (std::size_t part = 0; part < parts_; ++part) total.add(sum(i, part, group));
+    values.push_back(total.value() / static_cast<double>(plan_.temperature_samples));
   }
   return values;
 }
@@ -143,7 +151,26 @@ std::vector<double> IntervalAverages::interval_temperatures(Group group) const {
 std::vector<double> IntervalAverages::interval_collision_rates() const {
   std::vector<double> values;
   for (const std::size_t i : finished())
-    values.push_back((boundaries_[2 * i + 1] - boundaries_[2 * i]) / plan_.interval_length);
+    values.push_back((collisions(i, parts_) - collisions(i, 0)) / plan_.interval_length);
+  return values;
+}
+
+std::vector<double> IntervalAverages::part_temperatures() const {
+  std::vector<double> values;
+  for (const std::size_t i : finished())
+    for (std::size_t part = 0; part < parts_; ++part)
+      values.push_back(sum(i, part, Group::all).value() /
+                       static_cast<double>(first_sample(part + 1) - first_sample(part)));
+  return values;
+}
+
+std::vector<double> IntervalAverages::part_collision_rates() const {
+  const double step = plan_.interval_length / static_cast<double>(plan_.temperature_samples);
+  std::vector<double> values;
+  for (const std::size_t i : finished())
+    for (std::size_t part = 0; part < parts_; ++part)
+      values.push_back((collisions(i, part + 1) - collisions(i, part)) /
+                       (static_cast<double>(first_sample(part + 1) - first_sample(part)) * step));
   return values;
 }
 

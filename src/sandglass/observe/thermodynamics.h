@@ -35,7 +35,8 @@ class Timeseries {
 static_assert(Observer<Timeseries>);
 
 /// An Observer of the measured stretch: temperatures averaged over each interval (plan.temperature_samples evenly
-/// spaced frames, the first at its start) and the collision rate of each interval, from s at its ends.
+/// spaced frames, the first at its start) and the collision rate of each interval, from s at its ends. Few intervals
+/// are kept in several parts each, at least ten in all where there are as many samples, to see a trend by.
 class IntervalAverages {
  public:
   IntervalAverages(const MeasurementPlan& plan, const Population& population);
@@ -55,16 +56,30 @@ class IntervalAverages {
   /// One value per finished interval.
   [[nodiscard]] std::vector<double> interval_temperatures(Group group) const;
   [[nodiscard]] std::vector<double> interval_collision_rates() const;
+  /// One value per part of the finished intervals.
+  [[nodiscard]] std::vector<double> part_temperatures() const;  ///< of all disks
+  [[nodiscard]] std::vector<double> part_collision_rates() const;
 
  private:
   [[nodiscard]] std::vector<std::size_t> finished() const;
+  /// The first sample of a part of any interval; that of part `parts_` is the first of the next interval.
+  [[nodiscard]] std::uint64_t first_sample(std::uint64_t part) const {
+    return (part * plan_.temperature_samples + parts_ - 1) / parts_;
+  }
+  [[nodiscard]] const ExactSum& sum(std::size_t interval, std::size_t part, Group group) const {
+    return sums_[(interval * parts_ + part) * groups.size() + static_cast<std::size_t>(group)];
+  }
+  [[nodiscard]] double collisions(std::size_t interval, std::size_t part) const {
+    return boundaries_[interval * (parts_ + 1) + part];
+  }
 
   MeasurementPlan plan_;
   Population population_;
   Snapshot now_;
   std::uint64_t interval_ = 0, taken_ = 0;  ///< the next sample; interval_ == intervals: only the end is missing
-  std::vector<ExactSum> sums_;              ///< of temperatures: [interval, group]
-  std::vector<double> boundaries_;          ///< s at both ends: [interval, 2]
+  std::uint64_t parts_ = 1;                 ///< of an interval
+  std::vector<ExactSum> sums_;              ///< of temperatures: [interval, part, group]
+  std::vector<double> boundaries_;          ///< s where parts begin, and at the end: [interval, part + 1]
 };
 static_assert(Observer<IntervalAverages>);
 

@@ -114,10 +114,24 @@ TEST_CASE("interval averages: temperatures and rates of each interval") {
     feed(after, plan.end());
     for (std::size_t i = 0; i < averages.results().size(); ++i)
       CHECK(values(after.results()[i]) == values(averages.results()[i]));
+    CHECK(after.part_temperatures() == averages.part_temperatures());
+    CHECK(after.part_collision_rates() == averages.part_collision_rates());
+  }
+
+  // Three parts each, of 3, 3 and 2 samples, make at least ten: T and the rate by the same laws.
+  const auto part_temperatures = averages.part_temperatures(), part_rates = averages.part_collision_rates();
+  REQUIRE(part_temperatures.size() == 12);
+  REQUIRE(part_rates.size() == 12);
+  for (std::size_t i = 0; i < 12; ++i) {
+    const double first[] = {0, 0.75, 1.5, 2};
+    const double a = 1 + 2.0 * static_cast<double>(i / 3) + first[i % 3], length = first[i % 3 + 1] - first[i % 3];
+    CHECK(part_temperatures[i] == doctest::Approx((3 + a + (length - 0.25) / 2) / 4).epsilon(1e-12));
+    CHECK(part_rates[i] == doctest::Approx(30 + 2 * a + length).epsilon(1e-12));
   }
 
   IntervalAverages twin = averages;
   twin.merge(averages);
+  CHECK(twin.part_temperatures().size() == 24);
   CHECK(twin.interval_temperatures(Group::all).size() == 8);
   CHECK(twin.temperature(Group::all).value == doctest::Approx(averages.temperature(Group::all).value).epsilon(1e-12));
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "sandglass/report/number.h"
 #include "sandglass/report/paper_figures.h"
@@ -15,12 +16,20 @@ namespace {
 
 using Outcome = Check::Outcome;
 
+/// The correlation length where it is known to a half, and not an end of the range in which it was looked for.
+Measured correlation_length(const StatePoint& point) {
+  const Measured length = point.number("velocity_correlation_length");
+  const double longest = point.replicas.front().summary.box_length / (2 * std::numbers::pi);
+  const bool known = length.error < length.value / 2 && length.value > 1.05 && length.value < 0.95 * longest;
+  return known ? length : Measured{};
+}
+
 Figure velocity_structure(const Study& study) {
   const double restitution = shown_restitution(study, 0.7);
   Figure figure = paper_figure(23, fmt::format("Transverse velocity structure factor, ε = {:g}", restitution),
                                "⟨|J_k|²⟩/Σm of the momentum across the wave vector; then along it, and the correlation "
-                               "length of the first where "
-                               "it stands out of the noise. In elastic equilibrium both are T at every k (dotted).",
+                               "length of the first where it is known to a half. In elastic equilibrium both are T at "
+                               "every k (dotted).",
                                {"k", "1/Rₛ", true}, {"S_v(k)", "T₀", false});
   constexpr std::array<double, 4> chosen{0.1, 0.5, 0.65, 0.78};
   const Family family = few_of(densities_at(study, restitution, Prefer::largest), chosen);
@@ -37,7 +46,8 @@ Figure velocity_structure(const Study& study) {
   add(along, "longitudinal");
   Figure panel = part_of(figure, "c", "Correlation length", density_axis, {"ξ", "Rₛ", false});
   panel.family = restitution_axis;
-  panel.curves = against_density(study, [](const StatePoint& p) { return p.number("velocity_correlation_length"); });
+  panel.curves = against_density(study, correlation_length);
+  for (Curve& curve : panel.curves) curve.line = Line::points;
   for (Figure* part : {&along, &panel})
     if (!part->curves.empty()) figure.panels.push_back(std::move(*part));
   return figure;

@@ -105,17 +105,19 @@ Figure non_gaussian(const Study& study) {
 
 Figure overlap(const Study& study) {
   const Family all = densities_at(study, shown_restitution(study, 0.9)), family = shown_densities(study);
-  Figure figure = paper_figure(20, fmt::format("Overlap and its fluctuations, ε = {:g}", all.fixed),
-                               "Q(t), the part of the small disks that are within 0.6 Rₛ (observe.overlap_length) of "
-                               "where they were. Right: χ₄ = N(⟨Q²⟩ − ⟨Q⟩²), how many move together.",
-                               lag_axis, {"Q(t)", "", false});
+  Figure figure =
+      paper_figure(20, fmt::format("Overlap and its fluctuations, ε = {:g}", all.fixed),
+                   "Q(t), the part of the small disks that are within 0.6 Rₛ (observe.overlap_length) of "
+                   "where they were. Right: χ₄ = N(⟨Q²⟩ − ⟨Q⟩²), how many move together, where it exceeds its "
+                   "error.",
+                   lag_axis, {"Q(t)", "", false});
   figure.alternative_x = collisions_axis;
   add_family(figure, family, {}, "Q(t)", [](const StatePoint& p) { return small_curve(p, "overlap"); });
   Figure panel = part_of(figure, "b", "Dynamic susceptibility", lag_axis, {"χ₄(t)", "", true});
   panel.alternative_x = collisions_axis;
   add_family(panel, family, {}, "χ₄", [](const StatePoint& p) {
     auto curve = small_curve(p, "susceptibility");  // before anything moves it is nothing: a long way down
-    if (curve) curve = points_where(*curve, [](double, double y) { return y > 0.01; });
+    if (curve) curve = points_known(*curve, [](double y, double error) { return y > 0.01 && error < y; });
     return curve;
   });
   if (!panel.curves.empty()) figure.panels = {std::move(panel)};
@@ -227,7 +229,8 @@ Figure ageing(const Study& study) {
   Figure figure = paper_figure(22, "Ageing",
                                "MSD of the small disks in each interval of the run by itself; t_w is the time from the "
                                "start of the measurement to the middle of the interval. Right: MSD at t = 10 in each "
-                               "interval over its mean.",
+                               "interval over its mean. An interval of one run has no error: its scatter is seen "
+                               "between the intervals.",
                                lag_axis, {"MSD ⟨Δr²⟩", "Rₛ²", true});
   const auto has = [](const StatePoint& p) { return !aged_displacements(p).empty(); };
   const StatePoint* point = shown_point(study, 0.81, 0.9, figure, has);

@@ -40,6 +40,19 @@ Curve slopes(const Curve& curve, double spread, Quotient&& quotient) {
   return slope;
 }
 
+/// The points whose index `keep` wants.
+template <class Keep>
+Curve selected(const Curve& curve, Keep&& keep) {
+  Curve part = curve;
+  for (auto column : {&Curve::x, &Curve::y, &Curve::error, &Curve::alternative_x}) {
+    (part.*column).clear();
+    if ((curve.*column).empty()) continue;
+    for (std::size_t i = 0; i < curve.x.size(); ++i)
+      if (keep(i)) (part.*column).push_back((curve.*column)[i]);
+  }
+  return part;
+}
+
 Check monotonic(std::string claim, std::span<const Ranked> sequence, const std::string& what,
                 const std::string& argument, double sign) {
   std::vector<Ranked> known;
@@ -109,14 +122,11 @@ Measured crossing(const Curve& curve, double level) {
 }
 
 Curve points_where(const Curve& curve, const std::function<bool(double, double)>& keep) {
-  Curve part = curve;
-  for (auto column : {&Curve::x, &Curve::y, &Curve::error, &Curve::alternative_x}) {
-    (part.*column).clear();
-    if ((curve.*column).empty()) continue;
-    for (std::size_t i = 0; i < curve.x.size(); ++i)
-      if (keep(curve.x[i], curve.y[i])) (part.*column).push_back((curve.*column)[i]);
-  }
-  return part;
+  return selected(curve, [&](std::size_t i) { return keep(curve.x[i], curve.y[i]); });
+}
+
+Curve points_known(const Curve& curve, const std::function<bool(double, double)>& keep) {
+  return selected(curve, [&](std::size_t i) { return !curve.error.empty() && keep(curve.y[i], curve.error[i]); });
 }
 
 Curve between(const Curve& curve, double from, double to) {

@@ -29,6 +29,9 @@ Measured crossing(const Curve& curve, double level);
 /// The points (x, y) of the curve that `keep` wants.
 Curve points_where(const Curve& curve, const std::function<bool(double x, double y)>& keep);
 
+/// The points whose value and standard error `keep` wants; none of a curve without errors.
+Curve points_known(const Curve& curve, const std::function<bool(double y, double error)>& keep);
+
 /// The part of the curve with from <= x <= to.
 Curve between(const Curve& curve, double from, double to);
 

@@ -56,6 +56,15 @@ TEST_CASE("values between points, and none outside") {
   CHECK(std::isnan(value_at({}, 1).value));
 }
 
+TEST_CASE("points that are known well enough") {
+  Curve curve{.name = "", .x = {1, 2, 3}, .y = {5, 6, 7}};
+  const auto keep = [](double y, double error) { return error < y / 10; };
+  CHECK(points_known(curve, keep).x.empty());
+  curve.error = {0.1, 3, NAN};
+  CHECK(points_known(curve, keep).x == std::vector{1.0});
+  CHECK(points_known(curve, keep).error == std::vector{0.1});
+}
+
 TEST_CASE("a crossing is where the law says, its error the error of y over the slope") {
   const Measured up = crossing(sampled([](double x) { return 0.2 * std::pow(x, 0.5); }), 1);
   CHECK(up.value == doctest::Approx(25));

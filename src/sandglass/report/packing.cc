@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sandglass/core/frame.h"
+#include "sandglass/observe/bond_order.h"
 
 namespace sandglass {
 
@@ -16,6 +17,7 @@ Packing packing_of(const State& state, std::size_t most) {
   }
   Frame frame;
   make_frame(state, frame);
+  const std::vector<std::complex<double>> psi = bond_order(frame, population_of(state));
   auto shown = [&](double x) { return x >= packing.left && x < packing.left + packing.side; };
   for (std::size_t id = 0; id < state.size(); ++id) {
     const double x = frame.x[id] - box * std::floor(frame.x[id] / box);
@@ -25,6 +27,7 @@ Packing packing_of(const State& state, std::size_t most) {
     packing.x.push_back(x);
     packing.y.push_back(y);
     packing.species.push_back(state.disks[id].species);
+    packing.psi.push_back(psi[id]);
   }
   return packing;
 }

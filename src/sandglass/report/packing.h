@@ -1,7 +1,9 @@
-// The picture of a packing: centres and radii in the box, or in its middle where all would be too many to see.
+// The picture of a packing: centres, radii and bond order of the disks in the box, or in its middle where all would be
+// too many to see.
 #pragma once
 
 #include <array>
+#include <complex>
 #include <cstddef>
 #include <vector>
 
@@ -16,6 +18,7 @@ struct Packing {
   std::vector<std::size_t> id;  ///< of the disks whose centre is in that square
   std::vector<double> x, y;     ///< in [0, box_length)
   std::vector<Species> species;
+  std::vector<std::complex<double>> psi;  ///< psi_6 of each (observe/bond_order.h)
 };
 
 /// The disks of `state` at its own time. More than `most` are not drawn: then the square is the middle of the box, of

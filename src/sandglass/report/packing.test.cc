@@ -18,9 +18,25 @@ TEST_CASE("a packing that can be seen is shown whole, wrapped into the box") {
     CHECK(packing.x[i] >= 0);
     CHECK(packing.x[i] < state.box_length);
     CHECK(packing.species[i] == state.disks[packing.id[i]].species);
+    CHECK(std::abs(packing.psi[i]) <= 1);
   }
   // Two additions and a floor of numbers below 10 L: a few units in the last place of 10 L = 245.
   CHECK(packing.x[3] == doctest::Approx(synthetic_state(100).disks[3].x).epsilon(1e-12));
+}
+
+TEST_CASE("each disk has its bond order, whatever part of the box is shown") {
+  State state;  // a triangular lattice of 24 rows of 20, squeezed by 4 % into the square: close to psi_6 = 1
+  state.box_length = 60;
+  for (int row = 0; row < 24; ++row)
+    for (int column = 0; column < 20; ++column)
+      state.disks.push_back({.x = 3 * (column + 0.5 * (row % 2)), .y = 2.5 * row});
+  const Packing whole = packing_of(state), middle = packing_of(state, 120);
+  REQUIRE(middle.psi.size() == middle.id.size());
+  REQUIRE(middle.id.size() < 200);
+  for (std::size_t i = 0; i < middle.id.size(); ++i) {
+    CHECK(middle.psi[i] == whole.psi[middle.id[i]]);
+    CHECK(middle.psi[i].real() > 0.9);
+  }
 }
 
 TEST_CASE("of a larger one the middle is shown") {

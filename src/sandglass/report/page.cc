@@ -20,10 +20,13 @@ Json rounded(const std::vector<double>& values) {
 }
 
 Json json_of(const Packing& packing) {
-  return {
-      {"box_length", packing.box_length}, {"left", packing.left}, {"bottom", packing.bottom}, {"side", packing.side},
-      {"radius", packing.radius},         {"id", packing.id},     {"x", rounded(packing.x)},  {"y", rounded(packing.y)},
-      {"species", packing.species}};
+  std::vector<double> real, imaginary;
+  for (const std::complex<double>& psi : packing.psi) real.push_back(psi.real()), imaginary.push_back(psi.imag());
+  return {{"box_length", packing.box_length}, {"left", packing.left},
+          {"bottom", packing.bottom},         {"side", packing.side},
+          {"radius", packing.radius},         {"id", packing.id},
+          {"x", rounded(packing.x)},          {"y", rounded(packing.y)},
+          {"species", packing.species},       {"psi", {rounded(real), rounded(imaginary)}}};
 }
 
 Json json_of(const Table& table) { return {{"columns", table.columns}, {"rows", table.rows}}; }

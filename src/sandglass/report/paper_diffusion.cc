@@ -154,7 +154,8 @@ Diffusion diffusion_of(const StatePoint& point) {
 Figure coefficients(const Study& study) {
   Figure figure = paper_figure(10, "Diffusion coefficient by two methods",
                                "Lines: D(s = 1000) from the MSD of the small disks. Marks without a line: half the "
-                               "integral of ⟨v(t)·v(0)⟩, per collision.",
+                               "integral of ⟨v(t)·v(0)⟩, per collision, where it is known to a half. Then the second "
+                               "over the first at the points that are compared.",
                                density_axis, {"D per collision", "Rₛ²", true},
                                "D falls by orders of magnitude towards η = 0.8, later for smaller ε; D(s = 1000) at "
                                "large N and the integral of the VACF at N = 10⁴ agree.");
@@ -165,14 +166,17 @@ Figure coefficients(const Study& study) {
   std::string worst;
   double worst_ratio = 0;
   std::vector<Curve> integrals;
+  Figure ratios = part_of(figure, "b", "VACF over MSD", density_axis, {"D (VACF) / D (MSD)", "", false});
+  ratios.family = restitution_axis;
   for (const double restitution : restitutions_of(study)) {
     Curve slope{.name = fmt::format("ε = {:g}", restitution), .role = Role::family, .level = restitution};
     Curve area{.name = slope.name + ", VACF", .role = Role::family, .line = Line::points, .level = restitution};
+    Curve ratio{.name = slope.name, .role = Role::family, .line = Line::points, .level = restitution};
     std::vector<Ranked> sequence;
     for (const StatePoint* point : densities_at(study, restitution, Prefer::largest).points) {
       const auto [d, g, at] = diffusion_of(*point);
       for (const auto& [curve, value] : {std::pair(&slope, d), std::pair(&area, g)}) {
-        if (!(value.value > 0)) continue;
+        if (!(value.value > 0) || (curve == &area && value.error > value.value / 2)) continue;
         curve->x.push_back(point->packing_fraction());
         curve->y.push_back(value.value);
         curve->error.push_back(value.error);
@@ -182,6 +186,9 @@ Figure coefficients(const Study& study) {
       const std::uint64_t intervals = point->config.run.intervals * point->replicas.size();
       if (!std::isfinite(error) || at < reference_collisions / 2 || intervals < 4) continue;  // no error from fewer
       ++compared;
+      ratio.x.push_back(point->packing_fraction());
+      ratio.y.push_back(g.value / d.value);
+      ratio.error.push_back(error / d.value);
       const double allowed = std::max(significant_order * error, 0.1 * std::abs(d.value));
       if (std::abs(d.value - g.value) <= allowed) ++equal;
       if (std::abs(d.value - g.value) / allowed > worst_ratio) {
@@ -192,6 +199,7 @@ Figure coefficients(const Study& study) {
     }
     if (!slope.x.empty()) figure.curves.push_back(std::move(slope));
     if (!area.x.empty()) integrals.push_back(std::move(area));
+    if (!ratio.x.empty()) ratios.curves.push_back(std::move(ratio));
     std::erase_if(sequence, [](const Ranked& r) { return r.argument < 0.4999; });
     with_density.push_back(falls("", sequence, fmt::format("At ε = {:g} D", restitution), "η"));
   }
@@ -202,10 +210,10 @@ Figure coefficients(const Study& study) {
       sequence.push_back({point->restitution(), diffusion_of(*point).from_msd});
     with_restitution.push_back(falls("", sequence, fmt::format("At η = {:g} D", density), "ε"));
   }
-  Figure panel = part_of(figure, "b", "Lines of equal diffusivity", restitution_axis, density_axis);
+  Figure panel = part_of(figure, "c", "Lines of equal diffusivity", restitution_axis, density_axis);
   panel.family = {"D per collision", "Rₛ²", true};
   for (int p = 0; p >= -6; --p) {
-    Curve line = iso_line(figure, std::pow(10, p), fmt::format("D = 10^{}", p));
+    Curve line = iso_line(figure, std::pow(10, p), p == 0 ? "D = 1" : fmt::format("D = 10^{}", p));
     if (!line.x.empty()) panel.curves.push_back(std::move(line));
   }
   if (panel.curves.empty()) panel.missing = "No restitution of this study passes a power of ten between two densities.";
@@ -216,7 +224,12 @@ Figure coefficients(const Study& study) {
         fmt::format("Some runs do not reach s = 1000: there D is taken at the longest lag, down to s = {}.",
                     short_number(earliest));
   figure.curves.insert(figure.curves.end(), integrals.begin(), integrals.end());
-  figure.panels = {std::move(panel)};
+  if (!ratios.curves.empty()) {
+    const std::vector<double> densities = densities_of(study);
+    ratios.curves.push_back(guide("equal", {densities.front(), densities.back()}, {1, 1}));
+    figure.panels.push_back(std::move(ratios));
+  }
+  figure.panels.push_back(std::move(panel));
 
   Check methods{"The two methods agree within three errors or 10 %", Outcome::not_enough_data,
                 "Both are known up to s = 500, with errors over at least four intervals, at no point."};

@@ -101,6 +101,41 @@ TEST_CASE("of several points at one place the longest is shown, or the largest")
   CHECK(largest.points[0]->config.system.particles == 400000);
 }
 
+TEST_CASE("of many densities those nearest to the chosen ones are shown") {
+  const Study study = study_of({point(0.5, 0.9), point(0.6, 0.9), point(0.7, 0.9), point(0.8, 0.9), point(0.82, 0.9)});
+  const Family few = few_of(densities_at(study, 0.9), std::array{0.5, 0.71, 0.81});
+  REQUIRE(few.points.size() == 3);
+  CHECK(few.level(*few.points[0]) == 0.5);
+  CHECK(few.level(*few.points[1]) == 0.7);
+  CHECK(few.level(*few.points[2]) == 0.8);  // of two as near the lower one
+  CHECK(few_of(densities_at(study, 0.9), std::array{0.1, 0.2}).points.size() == 5);
+}
+
+TEST_CASE("temperatures of one run have the scatter of their disks as band") {
+  const Figure f = figure(paper_figures(study_of({point(0.5, 0.9, 5000)})), 1);
+  REQUIRE(f.curves.size() == 2);
+  for (const Curve& curve : f.curves) {
+    REQUIRE(curve.error.size() == curve.y.size());
+    for (std::size_t i = 0; i < curve.y.size(); ++i)
+      CHECK(curve.error[i] == doctest::Approx(curve.y[i] / 50));  // 2500 disks of each species
+  }
+}
+
+TEST_CASE("a correlation length is shown where it is known and inside its range") {
+  const auto shown = [](const Measured& length) {
+    StatePoint p = point(0.8, 0.9);
+    p.replicas[0].summary.box_length = 200;  // the longest is 31.8
+    p.numbers["velocity_correlation_length"] = length;
+    const Figure f = figure(paper_figures(study_of({p})), 23);
+    return std::any_of(f.panels.begin(), f.panels.end(), [](const Figure& panel) { return panel.id == "fig23c"; });
+  };
+  CHECK(shown({8, 1}));
+  CHECK_FALSE(shown({8, 5}));
+  CHECK_FALSE(shown({8, NAN}));
+  CHECK_FALSE(shown({31.8, 1e-14}));
+  CHECK_FALSE(shown({1, 1e-14}));
+}
+
 TEST_CASE("a line of equal t is where the curves pass it") {
   Figure f;
   for (const double e : {0.5, 0.9}) {
@@ -142,6 +177,26 @@ TEST_CASE("a peak counts only where the curve comes down behind it, and disks ge
   CHECK(outcome({with_peak(0.7, 5, 1), with_peak(0.78, 2, 1, 0.5)}) == Outcome::not_enough_data);  // a rattling one
   CHECK(outcome({with_peak(0.7, 5, 1), with_peak(0.78, 2, 2)}) == Outcome::not_enough_data);
   CHECK(outcome({with_peak(0.5, 5, 1), with_peak(0.6, 2, 1)}) == Outcome::not_enough_data);  // no cages there
+}
+
+TEST_CASE("fast and slow disks are judged at the lag by which they were told apart") {
+  StatePoint p = point(0.8, 0.9);
+  p.config.observe.selection_time = 1000;
+  const auto put = [&](const std::string& speed, std::vector<double> values) {
+    const std::string group = "/dynamics/small/mobility/" + speed + "/";
+    for (const auto& [name, column] : {std::pair{"time", std::vector<double>{1, 800, 975, 1190}},
+                                       {"collisions", {1, 2, 3, 4}},
+                                       {"value", std::move(values)},
+                                       {"error", {0.01, 0.01, 0.01, 0.01}}})
+      p.results.push_back({group + name, {4}, column, ""});
+  };
+  put("fastest", {0.1, 8, 9, 9});
+  put("slowest", {0.1, 0.5, 0.05, 1});
+  const Figure f = figure(paper_figures(study_of({p})), 13);
+  REQUIRE(f.checks.size() == 2);
+  CHECK(f.checks[0].outcome == Outcome::agrees);
+  CHECK(f.checks[1].outcome == Outcome::agrees);
+  CHECK(f.checks[1].finding.find("t = 975") != std::string::npos);
 }
 
 TEST_CASE("energy that goes in and does not come out is no steady state") {

@@ -65,6 +65,15 @@ Measured splitting(const Curve& curve, double contact, double across) {
   return left.value <= right.value || !std::isfinite(right.value) ? left : right;
 }
 
+double contact_of(const StatePoint& point, const std::string& pair) {
+  return pair == "small_small" ? 2 : 2 * point.config.system.size_ratio;
+}
+
+/// The distance of two disks of the pair with a big one between them in a straight line.
+double across_of(const StatePoint& point, const std::string& pair) {
+  return contact_of(point, pair) + 2 * point.config.system.size_ratio;
+}
+
 /// The density at which `splitting` sinks below a half for good, held against the paper's.
 Check split_check(const Family& family, const std::string& pair) {
   constexpr Measured paper{0.55, 0.02};  // read off figures at 0.5, 0.55, 0.6: about half a step
@@ -77,8 +86,7 @@ Check split_check(const Family& family, const std::string& pair) {
   double two_peaks = INFINITY;
   for (const StatePoint* point : family.points) {
     const auto curve = radial(*point, pair);
-    const double big = point->config.system.size_ratio, contact = pair == "small_small" ? 2 : 2 * big;
-    const Measured ratio = curve ? splitting(*curve, contact, contact + 2 * big) : Measured{};
+    const Measured ratio = curve ? splitting(*curve, contact_of(*point, pair), across_of(*point, pair)) : Measured{};
     if (point->packing_fraction() < 0.45 || !(ratio.error < too_noisy)) continue;
     known.push_back({point->packing_fraction(), ratio});
     if (ratio.value < -significant_extreme * ratio.error) two_peaks = std::min(two_peaks, known.back().argument);
@@ -104,16 +112,19 @@ Figure radial_figure(const Study& study, int number, const std::string& pair, co
                                {"distance r", "Rₛ", false}, {symbol + "(r)", "", false},
                                "The second peak splits near η = 0.55, more strongly for the big disks.");
   const Family family = densities_at(study, restitution, Prefer::largest);
-  const auto part = [&](double from, double to) {
-    return [&pair, from, to](const StatePoint& p) -> std::optional<Curve> {
-      const auto curve = radial(p, pair);
-      return curve ? std::optional(between(*curve, from, to)) : std::nullopt;
-    };
+  const auto whole = [&](const StatePoint& p) -> std::optional<Curve> {
+    const auto curve = radial(p, pair);
+    return curve ? std::optional(between(*curve, 1.5, 12)) : std::nullopt;
+  };
+  const auto second_peak = [&](const StatePoint& p) -> std::optional<Curve> {
+    const auto curve = radial(p, pair);
+    const double across = across_of(p, pair);
+    return curve ? std::optional(between(*curve, across - 1.9, across + 2.1)) : std::nullopt;
   };
   const Family shown = few_of(family, structure_densities);
-  add_family(figure, shown, structure_densities, "g(r)", part(1.5, 12));
+  add_family(figure, shown, structure_densities, "g(r)", whole);
   Figure panel = part_of(figure, "b", "The second peak", figure.x, figure.y);
-  add_family(panel, shown, {}, "g(r)", part(3, 7));
+  add_family(panel, shown, {}, "g(r)", second_peak);
   if (!panel.curves.empty()) figure.panels = {std::move(panel)};
   figure.checks = {split_check(family, pair)};
   return figure;

@@ -30,9 +30,23 @@ Curve history(const StatePoint& point, const std::string& name, std::string labe
   return curve;
 }
 
+/// The temperature of a species. Where replicas do not tell its error it is T / sqrt(n), by which that of n disks
+/// scatters at a moment.
+Curve temperature_history(const StatePoint& point, const std::string& species, std::string label, Role role) {
+  Curve curve = history(point, "temperature_" + species, std::move(label), role);
+  const auto& system = point.config.system;
+  const double share = role == Role::big ? system.big_fraction : 1 - system.big_fraction;
+  const double disks = share * static_cast<double>(system.particles);
+  curve.error.resize(curve.y.size(), Measured{}.error);
+  for (std::size_t i = 0; i < curve.y.size(); ++i)
+    if (!std::isfinite(curve.error[i])) curve.error[i] = curve.y[i] / std::sqrt(disks);
+  return curve;
+}
+
 Figure temperatures(const Study& study) {
   Figure figure = paper_figure(1, "Temperatures of small and big disks",
-                               "From the Gaussian start at T = T₀ to the steady state. Inset: collisions per disk.",
+                               "From the Gaussian start at T = T₀ to the steady state. Bands: T/√n, by which the "
+                               "temperature of n disks scatters at a moment. Inset: collisions per disk.",
                                {"time t since the start", "Rₛ √(mₛ/T₀)", true}, {"temperature T", "T₀", false},
                                "T_s and T_b become steady, with T_s > T_b (η = 0.5, ε = 0.9); collisions accumulate "
                                "at a steady rate.");
@@ -41,8 +55,8 @@ Figure temperatures(const Study& study) {
   });
   Check check{"T_s > T_b at η = 0.5, ε = 0.9", Outcome::not_enough_data, "There is no run at this point."};
   if (point != nullptr) {
-    figure.curves = {history(*point, "temperature_small", "T_s, small", Role::small),
-                     history(*point, "temperature_big", "T_b, big", Role::big)};
+    figure.curves = {temperature_history(*point, "small", "T_s, small", Role::small),
+                     temperature_history(*point, "big", "T_b, big", Role::big)};
     Figure inset = part_of(figure, "_collisions", "Collisions per disk", {"t", "", false}, {"s", "", false});
     inset.curves = {history(*point, "collisions", "s", Role::all)};
     figure.insets = {std::move(inset)};
@@ -98,11 +112,20 @@ Measured tail_exponent(const Curve& curve) {
   return {sxy / sxx, std::sqrt(variance) / sxx};
 }
 
+/// d ln Phi / d ln s over windows of half a decade, where it is known to 0.3.
+std::optional<Curve> velocity_exponent(const StatePoint& point) {
+  const auto curve = velocity_curve(point);
+  if (!curve) return std::nullopt;
+  return points_known(local_exponent(significant_part(*curve), std::sqrt(3.16)),
+                      [](double, double error) { return error < 0.3; });
+}
+
 Figure tails(const Study& study) {
   constexpr double restitution = 0.7;
   Figure figure = paper_figure(2, "Velocity autocorrelation, ε = 0.7",
-                               "Φ(s)/Φ(0) of the small disks up to where it is twice its error.", collisions_axis,
-                               {"Φ(s) / Φ(0)", "", true},
+                               "Φ(s)/Φ(0) of the small disks up to where it is twice its error. Right: its local "
+                               "exponent over half a decade, where known to 0.3; −1 (dotted) is a tail 1/s.",
+                               collisions_axis, {"Φ(s) / Φ(0)", "", true},
                                "Long-time tails, close to 1/s: slower than exponential at all densities below the "
                                "onset of backscattering.");
   figure.alternative_x = lag_axis;
@@ -112,6 +135,16 @@ Figure tails(const Study& study) {
                const auto curve = velocity_curve(p);
                return curve ? std::optional(significant_part(*curve)) : std::nullopt;
              });
+  Figure panel = part_of(figure, "b", "Local exponent", collisions_axis, {"d ln Φ / d ln s", "", false});
+  panel.alternative_x = lag_axis;
+  add_family(panel, family, {}, "", velocity_exponent);
+  panel.missing.clear();  // as in the first panel
+  if (!panel.curves.empty()) {
+    double last = 1;
+    for (const Curve& curve : panel.curves) last = std::max(last, curve.x.back());
+    panel.curves.push_back(guide("1/s", {panel.curves.front().x.front(), last}, {-1, -1}));
+    figure.panels = {std::move(panel)};
+  }
   Check check{
       "The tail is algebraic and close to 1/s for η ≤ 0.6: the exponent over 10 < s < 100 lies between −1.22 "
       "(1/(s √ln s) at s = 10) and −1",
@@ -195,8 +228,9 @@ Figure tail_shapes(const Study& study) {
   return figure;
 }
 
-/// The lowest value of a curve.
-Measured lowest(const Curve& curve) {
+/// The lowest value of a curve up to s = 50; what comes back from farther, lost in the noise, is not thrown back.
+Measured lowest(const Curve& whole) {
+  const Curve curve = between(whole, 0, 50);
   const auto at = std::min_element(curve.y.begin(), curve.y.end());
   if (at == curve.y.end() || curve.error.empty()) return {};
   return {*at, curve.error[static_cast<std::size_t>(at - curve.y.begin())]};
@@ -221,7 +255,7 @@ Figure backscattering(const Study& study) {
                                "negative range grows with η.");
   const auto make = [](const StatePoint& p) -> std::optional<Curve> {
     const auto curve = velocity_curve(p);
-    return curve ? std::optional(between(*curve, 0.3, 300)) : std::nullopt;
+    return curve ? std::optional(between(*curve, 0.3, 200)) : std::nullopt;
   };
   add_family(figure, restitutions_at(study, 0.72), paper_restitutions, "velocity autocorrelation", make);
   Check sign{"At η = 0.72 Φ becomes negative at the largest ε and not at the smallest", Outcome::not_enough_data,

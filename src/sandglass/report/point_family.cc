@@ -57,10 +57,16 @@ Family restitutions_at(const Study& study, double density, Prefer prefer) {
 }
 
 Family few_of(Family family, std::span<const double> chosen) {
-  std::vector<const StatePoint*> few;
-  for (const StatePoint* point : family.points)
-    if (std::any_of(chosen.begin(), chosen.end(), [&](double c) { return same_level(c, family.level(*point)); }))
-      few.push_back(point);
+  std::vector<const StatePoint*> few;  // in the order of their levels
+  for (const StatePoint* point : family.points) {
+    const bool nearest = std::any_of(chosen.begin(), chosen.end(), [&](double c) {
+      const auto nearer = [&](const StatePoint* a, const StatePoint* b) {  // of two as near the lower one
+        return std::abs(family.level(*a) - c) < std::abs(family.level(*b) - c) - 1e-9;
+      };
+      return *std::min_element(family.points.begin(), family.points.end(), nearer) == point;
+    });
+    if (nearest) few.push_back(point);
+  }
   if (few.size() >= 3) family.points = std::move(few);
   return family;
 }
@@ -102,8 +108,8 @@ const StatePoint* shown_point(const Study& study, double density, double restitu
                     density, restitution);
     return nullptr;
   }
-  figure.caption += fmt::format(" Here η = {:g}, ε = {:g}, N = {}.", best->packing_fraction(), best->restitution(),
-                                best->config.system.particles);
+  figure.title += fmt::format(", η = {:g}, ε = {:g}", best->packing_fraction(), best->restitution());
+  figure.caption += fmt::format(" Here N = {}.", best->config.system.particles);
   if (!is_point(best, density, restitution))
     figure.missing = fmt::format(
         "The paper's point, η = {:g} and ε = {:g}, is not in this study; the nearest is shown.", density, restitution);

@@ -34,7 +34,7 @@ struct Family {
 Family densities_at(const Study& study, double restitution, Prefer prefer = Prefer::longest);
 Family restitutions_at(const Study& study, double density, Prefer prefer = Prefer::longest);
 
-/// The points of the family at the levels `chosen`, where it has at least three of these; else all.
+/// The points of the family nearest to the levels `chosen`, where these are at least three; else all.
 Family few_of(Family family, std::span<const double> chosen);
 
 /// Those that occur in the study, ascending.
@@ -46,7 +46,7 @@ bool same_level(double a, double b);
 /// densities.
 double shown_restitution(const Study& study, double wanted);
 
-/// The point at (density, restitution), or the nearest one; which is shown is said in the figure's caption, and in
+/// The point at (density, restitution), or the nearest one; which is shown is said in the figure's title, and in
 /// `missing` if it is not the wanted one. Null if no point `has` the data.
 const StatePoint* shown_point(const Study& study, double density, double restitution, Figure& figure,
                               const std::function<bool(const StatePoint&)>& has);

@@ -23,8 +23,8 @@ std::vector<Quantity> make_quantities() {
   for (const std::string species : {"all", "small", "big"}) {
     const std::string dynamics = "/dynamics/" + species + "/";
     for (const char* name :
-         {"mean_square_displacement", "cage_relative_displacement", "velocity_autocorrelation", "running_diffusion",
-          "non_gaussian", "overlap", "susceptibility", "mobility/fastest", "mobility/slowest"})
+         {"mean_square_displacement", "cage_relative_displacement", "velocity_autocorrelation", "diffusion_coefficient",
+          "running_diffusion", "non_gaussian", "overlap", "susceptibility", "mobility/fastest", "mobility/slowest"})
       of_lag(dynamics + name);
     list.push_back({.group = dynamics + "velocity_autocorrelation",
                     .axes = {},

@@ -122,19 +122,16 @@ void describe_collapse(const Config& config, const State& end, Summary& summary)
 }
 
 void judge(const Config& config, const Measurement& measurement, Summary& summary) {
-  const Stationarity verdict = judge_stationarity(measurement.averages().interval_temperatures(Group::all),
-                                                  measurement.averages().interval_collision_rates());
+  const Stationarity verdict =
+      judge_stationarity(measurement.averages().part_temperatures(), measurement.averages().part_collision_rates());
   summary.stationary = verdict.stationary;
   const Trend& temperature = verdict.temperature;
   summary.temperature_drift = temperature.mean > 0 ? temperature.drift / temperature.mean : Summary::unknown;
-  if (!verdict.decided) {
-    summary.warnings.push_back(
-        "Too few intervals to tell whether the run was stationary: set run.intervals to 5 or more.");
-  } else if (!verdict.stationary && (config.drive.kind != DriveKind::none || config.collision.restitution == 1)) {
+  if (!verdict.stationary && (config.drive.kind != DriveKind::none || config.collision.restitution == 1)) {
     const Trend& rate = verdict.collision_rate;
     summary.warnings.push_back(fmt::format(
         "The measured stretch was not stationary: T changed by {:+.2f} % and the collision rate by {:+.2f} % from its "
-        "first to its last interval. The system ages: averages and errors depend on the waiting time. Equilibrate "
+        "first to its last part. The system ages: averages and errors depend on the waiting time. Equilibrate "
         "longer (run.equilibrate), or take independent starts.",
         100 * temperature.drift / temperature.mean, 100 * rate.drift / rate.mean));
   }
