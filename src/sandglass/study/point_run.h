@@ -20,7 +20,7 @@
 namespace sandglass {
 
 /// What is kept in checkpoints changes with this number.
-inline constexpr std::uint64_t checkpoint_format = 3;
+inline constexpr std::uint64_t checkpoint_format = 4;
 
 /// Refuses to go on with a run of another configuration, `held`.
 void check_same_run(const Config& config, const Config& held, const RunFolder& folder);
