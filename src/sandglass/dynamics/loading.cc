@@ -70,7 +70,7 @@ OverlappingPair IsaEngine::make_lists() {
     }
   }
   // First predictions into a calendar where nearly all is far ahead, only to learn how far that is.
-  whole_.set_calendar(Calendar(state_.now, 0, 1e-12 * state_.epoch_length, 0, 0));
+  whole_.set_calendar(Calendar(state_.now - state_.epoch_length, state_.epoch_length, state_.epoch_length, 0, 0));
   for (std::uint32_t i = 0; i < tables_.size; ++i) whole_.predict(i);
   return deepest;
 }

@@ -164,7 +164,7 @@ void Strip::schedule(std::uint32_t i, Foreseen contact) {
   if (cold.frozen_at != unconcerned) [[unlikely]]
     consider(freezing_time(i), Next::freeze);
   // Expiry and transit cost a root and divisions; most often it is plain that they do not come first.
-  if (!within_leash(disk, cold, t)) consider(list_expiry(disk, cold), Next::review);
+  if (!within_leash(disk, cold, t)) consider(std::fmin(list_expiry(disk, cold), calendar_.horizon(i)), Next::review);
   const double speed_x = std::fabs(disk.vx), speed_y = std::fabs(disk.vy);
   const double speed = speed_x > speed_y ? speed_x : speed_y;
   if (!(speed * (t - disk.time) < 0.999 * box_.transit)) consider(transit_time(disk, box_), Next::transit);
