@@ -33,7 +33,8 @@ Figure overview(const Study& study, std::string id, std::string title, std::stri
 std::vector<Figure> paper_figures(const Study& study) {
   std::vector<Figure> figures;
   add_velocity_figures(study, figures);
-  add_relaxation_figures(study, figures);
+  add_displacement_figures(study, figures);
+  add_scattering_figures(study, figures);
   add_diffusion_figures(study, figures);
   add_structure_figures(study, figures);
   add_mobility_figures(study, figures);

@@ -21,11 +21,12 @@ std::vector<Figure> paper_figures(const Study& study);
 std::vector<Figure> overview_figures(const Study& study);
 
 // By theme, in the order of their numbers.
-void add_velocity_figures(const Study& study, std::vector<Figure>& figures);    ///< 1 to 4
-void add_relaxation_figures(const Study& study, std::vector<Figure>& figures);  ///< 5 to 7, 11 to 13
-void add_diffusion_figures(const Study& study, std::vector<Figure>& figures);   ///< 8 to 10
-void add_structure_figures(const Study& study, std::vector<Figure>& figures);   ///< 14 to 17
-void add_mobility_figures(const Study& study, std::vector<Figure>& figures);    ///< 18 to 22
-void add_flow_figures(const Study& study, std::vector<Figure>& figures);        ///< 23, 24
+void add_velocity_figures(const Study& study, std::vector<Figure>& figures);      ///< 1 to 4
+void add_displacement_figures(const Study& study, std::vector<Figure>& figures);  ///< 5 to 7, 13
+void add_scattering_figures(const Study& study, std::vector<Figure>& figures);    ///< 11, 12
+void add_diffusion_figures(const Study& study, std::vector<Figure>& figures);     ///< 8 to 10
+void add_structure_figures(const Study& study, std::vector<Figure>& figures);     ///< 14 to 17
+void add_mobility_figures(const Study& study, std::vector<Figure>& figures);      ///< 18 to 22
+void add_flow_figures(const Study& study, std::vector<Figure>& figures);          ///< 23, 24
 
 }  // namespace sandglass
