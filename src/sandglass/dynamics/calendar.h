@@ -88,7 +88,7 @@ class Calendar {
 
   /// Takes out and returns the slot whose event is the earliest and not after `limit`; no_disk if there is none.
   /// `before(a, b)` orders two slots whose events are at the same time. `ahead(slot)` is told whose events come a few
-  /// events later; where the tables do not fit into the cache, `ahead` some twenty and `soon(slot)` some ten before.
+  /// events later; where the tables do not fit into the cache, `ahead` twelve and `soon(slot)` six before.
   template <class Before, class Ahead, class Soon>
   [[gnu::always_inline]] std::uint32_t pop(const Record* records, double limit, Before&& before, Ahead&& ahead,
                                            Soon&& soon) {

@@ -16,9 +16,9 @@ namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
 /// What comes next for a disk, in the order in which it is done at one time: a review (no event: its list expires, or
-/// the partner of a foreseen contact has found another, and its next contact must be looked for again), freezing (where
-/// several threads work, see freezing.cc), or the physical EventKind of the same name. The calendar has one entry for a
-/// contact, under the slot of one of the two disks.
+/// the partner of a foreseen contact has found another, or nothing was foreseen for long, and its next contact must be
+/// looked for again), freezing (where several threads work, see freezing.cc), or the physical EventKind of the same
+/// name. The calendar has one entry for a contact, under the slot of one of the two disks.
 enum class Next : std::uint8_t { review, freeze, contact, contact_entered_by_partner, kick, transit };
 
 /// The hot half: the flight, and what comes next. A contact stands in the records of both its disks.

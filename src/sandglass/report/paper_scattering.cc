@@ -15,24 +15,34 @@ namespace {
 
 using Outcome = Check::Outcome;
 
+/// S_inc(k, t) of the small disks.
+std::optional<Curve> scattering(const StatePoint& point, double k) {
+  return small_curve(point, "self_intermediate_scattering", k);
+}
+
 /// tau: S_inc(k, tau) = 1/2.
-Measured relaxation_time(const StatePoint& point, double wavenumber) {
-  const auto curve = small_curve(point, "self_intermediate_scattering", wavenumber);
+Measured relaxation_time(const StatePoint& point, double k) {
+  const auto curve = scattering(point, k);
   return curve ? crossing(*curve, 0.5) : Measured{};
+}
+
+/// S_inc(k, t) at the densities of the paper.
+Figure scattering_figure(int number, double k, const Family& family, std::string caption, std::string statement) {
+  Figure figure =
+      paper_figure(number, fmt::format("Incoherent scattering, k = {:g}, ε = {:g}", k, family.fixed),
+                   std::move(caption), lag_axis, {fmt::format("S_inc({:g}, t)", k), "", false}, std::move(statement));
+  figure.alternative_x = collisions_axis;
+  add_family(figure, family, paper_densities, figure.y.label, [k](const StatePoint& p) { return scattering(p, k); });
+  return figure;
 }
 
 Figure slow_scattering(const Study& study) {
   constexpr double k = 0.5;
-  const double restitution = shown_restitution(study, 0.9);
-  Figure figure =
-      paper_figure(11, fmt::format("Incoherent scattering, k = 0.5, ε = {:g}", restitution),
-                   "Small disks: memory of positions on the length 2π/k = 12.6 Rₛ. Inset: the relaxation "
-                   "time τ, S_inc(0.5, τ) = 1/2.",
-                   lag_axis, {"S_inc(0.5, t)", "", false}, "τ diverges on approach to the glass transition.");
-  figure.alternative_x = collisions_axis;
-  const Family family = densities_at(study, restitution);
-  add_family(figure, family, paper_densities, "S_inc(0.5, t)",
-             [](const StatePoint& p) { return small_curve(p, "self_intermediate_scattering", k); });
+  const Family family = densities_at(study, shown_restitution(study, 0.9));
+  Figure figure = scattering_figure(11, k, family,
+                                    "Small disks: memory of positions on the length 2π/k = 12.6 Rₛ. Inset: the "
+                                    "relaxation time τ, S_inc(0.5, τ) = 1/2.",
+                                    "τ diverges on approach to the glass transition.");
   Figure inset = part_of(figure, "_tau", "Relaxation time", {"η", "", false}, {"τ", "", true});
   Curve curve{.name = "τ(0.5)", .role = Role::small};
   for (const StatePoint* point : family.points) {
@@ -70,7 +80,7 @@ Figure slow_scattering(const Study& study) {
 
 /// The greatest |S - Gaussian| of a curve, with the error of S there.
 Measured deviation(const StatePoint& point, double k, double until) {
-  const auto s = small_curve(point, "self_intermediate_scattering", k);
+  const auto s = scattering(point, k);
   const auto gaussian = small_curve(point, "gaussian_approximation", k);
   Measured worst;
   if (!s || !gaussian || s->x != gaussian->x || s->error.empty()) return worst;
@@ -136,7 +146,7 @@ Check two_steps(const Family& family) {
               Outcome::not_enough_data, "There is no run at η ≥ 0.78."};
   std::string two, one, unclear;
   for (const StatePoint* point : family.points) {
-    const auto s = small_curve(*point, "self_intermediate_scattering", 3);
+    const auto s = scattering(*point, 3);
     if (!s || s->y.empty() || point->packing_fraction() < 0.7799 || s->error.empty()) continue;
     const Decay decay = decay_of(*s);
     (decay == Decay::two_steps  ? two
@@ -156,23 +166,16 @@ Check two_steps(const Family& family) {
 
 Figure fast_scattering(const Study& study) {
   constexpr double k = 3;
-  const double restitution = shown_restitution(study, 0.9);
-  Figure figure =
-      paper_figure(12, fmt::format("Incoherent scattering, k = 3, ε = {:g}", restitution),
-                   "Small disks, memory on the length 2π/k = 2.1 Rₛ. Right, dashed: the Gaussian approximation "
-                   "exp(−k²⟨Δr²⟩/4), at some densities.",
-                   lag_axis, {"S_inc(3, t)", "", false},
-                   "Two-step decay for η ≥ 0.78. The Gaussian approximation holds at all times at low "
-                   "density, only at short times at the highest.");
-  figure.alternative_x = collisions_axis;
-  const Family family = densities_at(study, restitution);
-  add_family(figure, family, paper_densities, "S_inc(3, t)",
-             [](const StatePoint& p) { return small_curve(p, "self_intermediate_scattering", k); });
+  const Family family = densities_at(study, shown_restitution(study, 0.9));
+  Figure figure = scattering_figure(12, k, family,
+                                    "Small disks, memory on the length 2π/k = 2.1 Rₛ. Right, dashed: the Gaussian "
+                                    "approximation exp(−k²⟨Δr²⟩/4), at some densities.",
+                                    "Two-step decay for η ≥ 0.78. The Gaussian approximation holds at all times at low "
+                                    "density, only at short times at the highest.");
   Figure panel = part_of(figure, "b", "With the Gaussian approximation", lag_axis, figure.y);
   panel.alternative_x = collisions_axis;
   const Family few = few_of(family, std::array{0.3, 0.72, 0.78, 0.81});
-  add_family(panel, few, {}, "S_inc(3, t)",
-             [](const StatePoint& p) { return small_curve(p, "self_intermediate_scattering", k); });
+  add_family(panel, few, {}, "S_inc(3, t)", [](const StatePoint& p) { return scattering(p, k); });
   Figure gaussians = panel;
   gaussians.curves.clear();
   add_family(gaussians, few, {}, "", [](const StatePoint& p) {

@@ -57,16 +57,17 @@ Family restitutions_at(const Study& study, double density, Prefer prefer) {
 }
 
 Family few_of(Family family, std::span<const double> chosen) {
-  std::vector<const StatePoint*> few;  // in the order of their levels
-  for (const StatePoint* point : family.points) {
-    const bool nearest = std::any_of(chosen.begin(), chosen.end(), [&](double c) {
-      const auto nearer = [&](const StatePoint* a, const StatePoint* b) {  // of two as near the lower one
-        return std::abs(family.level(*a) - c) < std::abs(family.level(*b) - c) - 1e-9;
-      };
-      return *std::min_element(family.points.begin(), family.points.end(), nearer) == point;
-    });
-    if (nearest) few.push_back(point);
+  std::vector<bool> wanted(family.points.size());
+  for (const double level : chosen) {
+    const auto nearer = [&](const StatePoint* a, const StatePoint* b) {  // of two as near the lower one
+      return std::abs(family.level(*a) - level) < std::abs(family.level(*b) - level) - 1e-9;
+    };
+    const auto nearest = std::min_element(family.points.begin(), family.points.end(), nearer);
+    if (nearest != family.points.end()) wanted[static_cast<std::size_t>(nearest - family.points.begin())] = true;
   }
+  std::vector<const StatePoint*> few;  // in the order of their levels
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (wanted[i]) few.push_back(family.points[i]);
   if (few.size() >= 3) family.points = std::move(few);
   return family;
 }
