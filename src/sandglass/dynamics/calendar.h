@@ -87,11 +87,10 @@ class Calendar {
   }
 
   /// Takes out and returns the slot whose event is the earliest and not after `limit`; no_disk if there is none.
-  /// `before(a, b)` orders two slots whose events are at the same time. `ahead(slot)` is told whose events come a few
-  /// events later; where the tables do not fit into the cache, `ahead` twelve and `soon(slot)` six before.
-  template <class Before, class Ahead, class Soon>
-  [[gnu::always_inline]] std::uint32_t pop(const Record* records, double limit, Before&& before, Ahead&& ahead,
-                                           Soon&& soon) {
+  /// `before(a, b)` orders two slots whose events are at the same time. `fetch(stage, slot)` is told whose events come
+  /// a few events later: where the tables do not fit into the cache in four stages, else of the first alone.
+  template <class Before, class Fetch>
+  [[gnu::always_inline]] std::uint32_t pop(const Record* records, double limit, Before&& before, Fetch&& fetch) {
     for (;;) {
       const Entry next = sorted_[head_];
       if (late_soonest_ <= next.time || next.time == sorted_[head_ + 1].time) [[unlikely]] {
@@ -110,11 +109,11 @@ class Calendar {
       if (next.time > limit) return no_disk;
       ++head_;
       if (out_of_cache_) {
-        if (const Entry& later = sorted_[head_ + 12]; later.time < nothing) ahead(later.slot);
-        if (const Entry& later = sorted_[head_ + 6]; later.time < nothing) soon(later.slot);
+        for (unsigned stage = 0; stage < fetch_stages; ++stage)
+          if (const Entry& later = sorted_[head_ + fetch_ahead[stage]]; later.time < nothing) fetch(stage, later.slot);
       } else {  // from one level of the cache to the next
         prefetch(&records[sorted_[head_ + 8].slot]);
-        if (const Entry& later = sorted_[head_ + 4]; later.time < nothing) ahead(later.slot);
+        if (const Entry& later = sorted_[head_ + 4]; later.time < nothing) fetch(0, later.slot);
       }
       if (states(records[next.slot], next.time)) [[likely]]
         return next.slot;
@@ -124,6 +123,7 @@ class Calendar {
  private:
   static constexpr std::uint32_t none = 0xffffffffu;
   static constexpr double nothing = std::numeric_limits<double>::infinity();
+  static constexpr unsigned fetch_stages = 4, fetch_ahead[fetch_stages] = {12, 8, 5, 2};  // events
   static constexpr std::size_t beyond_end = 32;  // entries for nobody after the sorted ones
 
   struct Entry {

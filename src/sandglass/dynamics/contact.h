@@ -33,15 +33,24 @@ struct Box {
   }
 };
 
+/// Where a disk, flying freely, is at time t; perhaps outside the box.
+struct Position {
+  double x, y;
+};
+template <class A>
+[[gnu::always_inline]] inline Position position_at(const A& disk, double t) {
+  const double flight = t - disk.time;
+  return {std::fma(disk.vx, flight, disk.x), std::fma(disk.vy, flight, disk.y)};
+}
+
 /// Separation of two disks (b minus a, nearest image) at time t.
 struct Separation {
   double x, y;
 };
 template <class A, class B>
 [[gnu::always_inline]] inline Separation separation_at(const A& a, const B& b, double t, const Box& box) {
-  const double flight_a = t - a.time, flight_b = t - b.time;
-  return {box.nearest(std::fma(b.vx, flight_b, b.x) - std::fma(a.vx, flight_a, a.x)),
-          box.nearest(std::fma(b.vy, flight_b, b.y) - std::fma(a.vy, flight_a, a.y))};
+  const Position at_a = position_at(a, t), at_b = position_at(b, t);
+  return {box.nearest(at_b.x - at_a.x), box.nearest(at_b.y - at_a.y)};
 }
 
 /// Time at which disks a and b, flying freely from their records, come to the distance `contact` = R_a + R_b of their

@@ -15,10 +15,8 @@ inline namespace SANDGLASS_ISA {
 double Strip::earliest_touch(const Record& disk, std::uint32_t ghost) const {
   const Record& other = records_[ghost];
   const double start = since(ghost), t = disk.time > start ? disk.time : start;
-  const double rx =
-      box_.nearest(std::fma(disk.vx, t - disk.time, disk.x) - std::fma(other.vx, start - other.time, other.x));
-  const double ry =
-      box_.nearest(std::fma(disk.vy, t - disk.time, disk.y) - std::fma(other.vy, start - other.time, other.y));
+  const Position at = position_at(disk, t), other_at = position_at(other, start);
+  const double rx = box_.nearest(at.x - other_at.x), ry = box_.nearest(at.y - other_at.y);
   const double distance = std::sqrt(rx * rx + ry * ry), contact = disk.radius + other.radius;
   const double speed = tables_->window.top_speed[other.species];
   const double room = distance - contact * (1 + 1e-9) - speed * (t - start);  // 1e-9: more than all rounding

@@ -11,8 +11,8 @@ inline namespace SANDGLASS_ISA {
 /// Gap of disk i on its present flight at time t and disk k at t_k.
 double Strip::gap_at(std::uint32_t i, double t, std::uint32_t k, double t_k) const {
   const Record &a = records_[i], &b = records_[k];
-  const double rx = box_.nearest(std::fma(b.vx, t_k - b.time, b.x) - std::fma(a.vx, t - a.time, a.x));
-  const double ry = box_.nearest(std::fma(b.vy, t_k - b.time, b.y) - std::fma(a.vy, t - a.time, a.y));
+  const Position at_a = position_at(a, t), at_b = position_at(b, t_k);
+  const double rx = box_.nearest(at_b.x - at_a.x), ry = box_.nearest(at_b.y - at_a.y);
   return std::sqrt(rx * rx + ry * ry) - (a.radius + b.radius);
 }
 
@@ -74,7 +74,7 @@ void Strip::on_frozen_kick(const FrozenKick& kick) {
   for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) bound(list[n]);
 
   const Grid& grid = neighbours_.grid();
-  const double x = std::fma(disk.vx, start - disk.time, disk.x), y = std::fma(disk.vy, start - disk.time, disk.y);
+  const auto [x, y] = position_at(disk, start);
   const double bodies = disk.radius + largest_radius();
   if (!whole_) {  // another strip cannot know of this kick: it must not reach there
     const double room = grid.height(lane_ / 2) - leash_;

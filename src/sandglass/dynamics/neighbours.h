@@ -112,6 +112,7 @@ class Neighbours {
       goers[gone] = mine[n];
       gone += !holds(found.first, found.count, mine[n]);
     }
+    for (std::uint32_t n = 0; n < came + gone; ++n) prefetch(list(changes_[n]));
     for (std::uint32_t n = 0; n < stride_; ++n) mine[n] = n < found.count ? found.first[n] : nobody_;
     records[slot].neighbour_count = static_cast<std::uint16_t>(found.count);
     for (std::uint32_t n = 0; n < gone; ++n) remove(goers[n], slot, records);

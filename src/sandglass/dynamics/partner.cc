@@ -11,8 +11,8 @@ inline namespace SANDGLASS_ISA {
 #ifdef SANDGLASS_SIMD
 /// surface_gap to one block of a list, lane by lane, the same operations in the same order: the smallest, and where.
 Smallest Strip::smallest_gap(const Record& disk, const std::uint32_t* list, double t) const {
-  const double flight = t - disk.time;
-  const Vector x = Vector::all(std::fma(disk.vx, flight, disk.x)), y = Vector::all(std::fma(disk.vy, flight, disk.y));
+  const Position at = position_at(disk, t);
+  const Vector x = Vector::all(at.x), y = Vector::all(at.y);
   const Vector length = Vector::all(box_.length), inverse = Vector::all(box_.inverse);
   auto nearest = [&](Vector difference) { return fnma(length, nearest_integer(difference * inverse), difference); };
   Vector other[8];  // columns of the record: x, y, vx, vy, time, next_time, radius
@@ -26,7 +26,29 @@ Smallest Strip::smallest_gap(const Record& disk, const std::uint32_t* list, doub
   const double smallest_of_all = smallest(candidate);
   return {smallest_of_all, (candidate == Vector::all(smallest_of_all)).lanes()};
 }
+
+/// Of the first block of the list, frozen disks apart, who is nearest to disk i at time t; any of them at equal gaps.
+Strip::Nearest Strip::nearest_listed(std::uint32_t i, double t) const {
+  const std::uint32_t* const list = neighbours_.list(i);
+  Nearest nearest{no_disk, never};
+  for (std::uint32_t first = 0; first < Neighbours::block; first += Vector::width) {
+    const auto [gap, lanes] = smallest_gap(records_[i], list + first, t);
+    if (gap < nearest.gap) nearest = {list[first + static_cast<unsigned>(__builtin_ctz(lanes))], gap};
+  }
+  return nearest;
+}
+#else
+Strip::Nearest Strip::nearest_listed(std::uint32_t, double) const { return {no_disk, never}; }
 #endif
+
+/// Unlisted disks have list centres at least R_i + R_j + skin from that of disk i, and skin = 2 leash + way; each of
+/// the two has moved by leash at most, a frozen one by way as well.
+bool Strip::nobody_unlisted_within(double gap, std::uint32_t i, double t) const {
+  const auto [x, y] = position_at(records_[i], t);
+  const Grid& grid = neighbours_.grid();
+  const double dx = grid.offset(cold_[i].centre.x, x), dy = grid.offset(cold_[i].centre.y, y);
+  return gap < leash_ - std::sqrt(dx * dx + dy * dy);
+}
 
 /// The disk with the smallest gap of surfaces to disk i at time t; the smaller id at equal gaps. In a window: among
 /// those that are known, or undecided where a frozen one may be nearer, or one of which another strip alone knows.
@@ -65,13 +87,9 @@ std::uint32_t Strip::nearest_partner(std::uint32_t i, double t) {
   visit_listed(0, disk.neighbour_count);
 #endif
 
-  // Unlisted disks have list centres at least R_i + R_j + skin from ours, and skin = 2 leash + way; each of the two has
-  // moved by leash at most, a frozen one by way as well.
-  const double x = std::fma(disk.vx, t - disk.time, disk.x), y = std::fma(disk.vy, t - disk.time, disk.y);
-  const Grid& grid = neighbours_.grid();
-  const double dx = grid.offset(cold_[i].centre.x, x), dy = grid.offset(cold_[i].centre.y, y);
-  const double moved = std::sqrt(dx * dx + dy * dy);
-  if (!(best_gap < leash_ - moved)) {
+  if (!nobody_unlisted_within(best_gap, i, t)) {
+    const auto [x, y] = position_at(disk, t);
+    const Grid& grid = neighbours_.grid();
     ++bookkeeping_.wide_partner_searches;
     const double margin = disk.radius + largest_radius() + leash_ + tables_->window.way + 1e-9;
     const double room = whole_ ? never : grid.height(lane_) - leash_;  // what lies beyond is another strip's
@@ -95,7 +113,7 @@ std::uint32_t Strip::partner_within_reach(std::uint32_t i, double t, const Kick&
     if (!within_reach(disk, records_[k], disk.radius + records_[k].radius, tables_->state.drive.reach, t, box_)) return;
     candidates_.push_back({cold_[k].id, k});
   };
-  const double x = std::fma(disk.vx, t - disk.time, disk.x), y = std::fma(disk.vy, t - disk.time, disk.y);
+  const auto [x, y] = position_at(disk, t);
   const double radius = tables_->state.drive.reach * (disk.radius + largest_radius()) + leash_ + 1e-9;
   neighbours_.grid().visit_near(x, y, radius, visit);
   if (candidates_.empty()) return no_disk;

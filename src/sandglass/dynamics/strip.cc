@@ -26,6 +26,7 @@ Strip::Strip(Tables& tables)
       neighbours_(tables.neighbours) {
   for (const int a : {small, big})
     for (const int b : {small, big}) masses_[a][b] = tables.masses[a][b];
+  for (std::uint32_t& partner : likely_partners_) partner = no_disk;
 }
 
 Strip::Strip(Tables& tables, Rows core, std::uint32_t reach, std::uint32_t lane) : Strip(tables) {
@@ -38,9 +39,8 @@ Strip::Strip(Tables& tables, Rows core, std::uint32_t reach, std::uint32_t lane)
 void Strip::run(double end) {
   end_ = end;
   auto in_order = [this](std::uint32_t a, std::uint32_t b) { return before(a, b); };
-  auto ahead = [this](std::uint32_t i) { fetch_disk(i); };
-  auto soon = [this](std::uint32_t i) { fetch_neighbours(i); };
-  auto pop = [&] { return calendar_.pop(records_, end_, in_order, ahead, soon); };
+  auto fetch_stage = [this](unsigned stage, std::uint32_t i) { fetch(stage, i); };
+  auto pop = [&] { return calendar_.pop(records_, end_, in_order, fetch_stage); };
   for (std::uint32_t i = pop(); i != no_disk; i = pop()) {
     assert(owns(i));
     const Record& disk = records_[i];
@@ -88,28 +88,67 @@ void Strip::hand_in(Tally& tally, Simulation::Bookkeeping& bookkeeping) {
   bookkeeping_ = {};
 }
 
-/// Brings what an event of disk i will need nearer to the processor: first its own list and cold record, and its
-/// partner's; then, through the lists, the neighbours, and where the list expires the grid.
-void Strip::fetch_disk(std::uint32_t i) const {
-  const std::uint32_t partner = records_[i].partner;
-  prefetch(neighbours_.list(i));
-  prefetch(&cold_[i]);
-  const std::uint32_t j = partner == no_disk ? i : partner;
-  prefetch(neighbours_.list(j));
-  prefetch(&cold_[j]);
+/// Brings what an event of disk i will need nearer to the processor. Each stage reads what the one before has fetched.
+[[gnu::always_inline]] inline void Strip::fetch(unsigned stage, std::uint32_t i) {
+  switch (stage) {
+    case 0:
+      return fetch_disks(i);
+    case 1:
+      return fetch_neighbours(i);
+    case 2:
+      return fetch_kick_partner(i);
+    default:
+      return fetch_partners_neighbours(i);
+  }
 }
 
-void Strip::fetch_neighbours(std::uint32_t i) const {
-  const Record& disk = records_[i];
+/// Its list and cold record, and its partner's.
+void Strip::fetch_disks(std::uint32_t i) const {
+  const std::uint32_t partner = records_[i].partner;
+  fetch_disk(i);
+  fetch_disk(partner == no_disk ? i : partner);
+}
+
+void Strip::fetch_disk(std::uint32_t i) const {
+  prefetch(neighbours_.list(i));
+  prefetch(&cold_[i]);
+}
+
+void Strip::fetch_listed(std::uint32_t i) const {
   const std::uint32_t* list = neighbours_.list(i);
   for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
-  if (disk.partner != no_disk) {
-    list = neighbours_.list(disk.partner);
-    for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
-  } else if (disk.next == Next::review && !within_leash(disk, cold_[i], disk.next_time)) {
-    const double flight = disk.next_time - disk.time;
-    neighbours_.fetch(neighbours_.grid().point(disk.x + disk.vx * flight, disk.y + disk.vy * flight), disk);
-  }
+}
+
+/// Through the lists, the neighbours; where its list expires the grid.
+void Strip::fetch_neighbours(std::uint32_t i) const {
+  const Record& disk = records_[i];
+  fetch_listed(i);
+  if (disk.partner != no_disk)
+    fetch_listed(disk.partner);
+  else if (disk.next == Next::review && !within_leash(disk, cold_[i], disk.next_time))
+    fetch_grid(disk);
+}
+
+/// The grid around where the disk will be at its next event.
+void Strip::fetch_grid(const Record& disk) const {
+  const auto [x, y] = position_at(disk, disk.next_time);
+  neighbours_.fetch(neighbours_.grid().point(x, y), disk);
+}
+
+/// The partner of its kick will most likely be the one that would be if nothing happened until then.
+void Strip::fetch_kick_partner(std::uint32_t i) {
+  const Record& disk = records_[i];
+  const Drive& drive = tables_->state.drive;
+  if (disk.next != Next::kick || drive.kind != DriveKind::pair) return;
+  if (drive.partner == PartnerRule::within) return fetch_grid(disk);
+  const auto [partner, gap] = nearest_listed(i, disk.next_time);
+  likely_partners_[i % 16] = partner;
+  if (partner != no_disk) fetch_disk(partner);
+  if (!nobody_unlisted_within(gap, i, disk.next_time)) fetch_grid(disk);
+}
+
+void Strip::fetch_partners_neighbours(std::uint32_t i) const {
+  if (records_[i].next == Next::kick && likely_partners_[i % 16] != no_disk) fetch_listed(likely_partners_[i % 16]);
 }
 
 /// In an inelastic collapse infinitely many collisions take place in a finite time, and the loop would never end. After

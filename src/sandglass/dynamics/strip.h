@@ -120,8 +120,14 @@ class alignas(128) Strip {
   double kick_pair(std::uint32_t i, std::uint32_t j, double t, double px, double py);
   bool remake_list(std::uint32_t i, double t);
   void check_progress(double t);
+  void fetch(unsigned stage, std::uint32_t i);
+  void fetch_disks(std::uint32_t i) const;
   void fetch_disk(std::uint32_t i) const;
+  void fetch_listed(std::uint32_t i) const;
   void fetch_neighbours(std::uint32_t i) const;
+  void fetch_grid(const Record& disk) const;
+  void fetch_kick_partner(std::uint32_t i);
+  void fetch_partners_neighbours(std::uint32_t i) const;
 
   void settle(std::uint32_t i, Lanes begun);
   void schedule(std::uint32_t i, Foreseen contact);
@@ -142,6 +148,12 @@ class alignas(128) Strip {
 
   static constexpr std::uint32_t undecided = no_disk - 1;  // in place of a partner: a frozen disk may be nearer
   std::uint32_t nearest_partner(std::uint32_t i, double t);
+  struct Nearest {
+    std::uint32_t slot;
+    double gap;
+  };
+  [[nodiscard]] Nearest nearest_listed(std::uint32_t i, double t) const;
+  [[nodiscard]] bool nobody_unlisted_within(double gap, std::uint32_t i, double t) const;
   [[nodiscard]] Smallest smallest_gap(const Record& disk, const std::uint32_t* list, double t) const;
   std::uint32_t partner_within_reach(std::uint32_t i, double t, const Kick& kick);
 
@@ -189,6 +201,7 @@ class alignas(128) Strip {
   GrowingArray<DiskName> candidates_;  // possible partners of a kick
   DrawnKicks drawn_kicks_{};           // some that come soon
   double drawn_until_ = -never;        // when the last of them comes
+  std::uint32_t likely_partners_[16];  // of kicks that come soon, by slot modulo 16; to fetch them only
 
   Rows core_;                // the disks that stand here are the strip's own
   std::uint32_t reach_ = 0;  // rows beyond in which they have neighbours
