@@ -38,13 +38,8 @@ struct GridTable {
     const double cells = std::floor(length / cell_size);
     side = cells < 1 ? 1 : cells > 32768 ? 32768 : static_cast<std::uint32_t>(cells);
     used = side * side;
-    make_room(used + used / 8 + 64);
-  }
-
-  void make_room(std::size_t size) {
-    const std::size_t before = lines.size();
-    lines.enlarge(size);
-    for (std::size_t i = before; i < size; ++i) lines[i] = Cell();
+    lines = Array<Cell>(used + used / 8 + 64);
+    for (std::uint32_t i = 0; i < used; ++i) lines[i] = Cell();
   }
 
   double box_length = 0;
@@ -76,11 +71,11 @@ class Grid {
 
   /// Takes `count` unused lines for the cells that will need a second one. Other Grids must be told (refresh).
   void take_lines(std::uint32_t count) {
-    if (table_->used + count > table_->lines.size())
-      table_->make_room(table_->used + count + table_->lines.size() / 16);
-    spare_ = table_->used;
-    table_->used += count;
-    spare_end_ = table_->used;
+    const std::uint32_t first = table_->used;
+    if (first + count > table_->lines.size()) table_->lines.enlarge(first + count + table_->lines.size() / 16);
+    for (std::uint32_t i = first; i < first + count; ++i) table_->lines[i] = Cell();  // not before: unused is no memory
+    spare_ = first;
+    spare_end_ = table_->used = first + count;
     refresh();
   }
   [[nodiscard]] std::uint32_t spare_lines() const { return spare_end_ - spare_; }

@@ -92,12 +92,16 @@ double IsaEngine::default_skin() const {
   return std::fmin(std::fmax(skin, 0.2 * contact), room);
 }
 
-/// Two disks to a cell, of the five that there is room for in a line of the grid. With threads the cells are smaller,
-/// so that three rows are just two ranges high: lanes are made of whole rows.
+/// A line of the grid has room for five disks: three to a cell, or two where they are not packed closely (packing
+/// fractions below 0.4) and more cells would be too full. With threads the cells are smaller, so that three rows are
+/// just two ranges high: lanes are made of whole rows.
 double IsaEngine::default_cell_size() const {
   if (tuning_.cell_size > 0) return tuning_.cell_size;
-  const double cell = tables_.box.length * std::sqrt(2 / static_cast<double>(tables_.size));
-  const double range = 2 * std::fmax(state_.mixture.radius[small], state_.mixture.radius[big]) + default_skin();
+  const auto& radius = state_.mixture.radius;
+  const double area_per_disk = tables_.box.length * tables_.box.length / static_cast<double>(tables_.size);
+  const double contact = radius[small] + radius[big];
+  const double cell = std::sqrt((contact * contact > 0.5 * area_per_disk ? 3 : 2) * area_per_disk);
+  const double range = 2 * std::fmax(radius[small], radius[big]) + default_skin();
   return crew ? std::fmin(cell, (1 + 1e-4) * 2 / 3 * range) : cell;
 }
 

@@ -9,18 +9,20 @@
 namespace sandglass {
 
 ContactRate::ContactRate(const Population& population, double range)
-    : population_(population), range_(range), species_(species_by_id(population)) {}
+    : box_length_(population.box_length),
+      radius_{population.mixture.radius[small], population.mixture.radius[big]},
+      range_(range),
+      species_(species_by_id(population)) {}
 
 void ContactRate::add(const Frame& frame) {
-  const auto& radius = population_.mixture.radius;
-  const Cells cells(frame.x, frame.y, population_.box_length, 2 * std::max(radius[small], radius[big]) * (1 + range_));
+  const Cells cells(frame.x, frame.y, box_length_, 2 * std::max(radius_[small], radius_[big]) * (1 + range_));
   std::vector<Cells::Neighbour> near;
   std::array<Bins, 3> speeds{};
   for (std::uint32_t id = 0; id < frame.size(); ++id) {
     cells.collect(id, 1, near);
     for (const auto& other : near) {
       if (other.id < id) continue;
-      const double contact = radius[species_[id]] + radius[species_[other.id]];
+      const double contact = radius_[species_[id]] + radius_[species_[other.id]];
       const double distance = std::sqrt(other.squared()), gap = distance / contact - 1;
       const double place = gap / range_ * bins;
       if (!(place >= 0 && place < bins)) continue;

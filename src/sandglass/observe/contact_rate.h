@@ -36,7 +36,8 @@ class ContactRate {
   static constexpr std::size_t bins = edge_bins;
   using Bins = std::array<double, bins>;
 
-  Population population_;
+  double box_length_;
+  std::array<double, species_count> radius_;
   double range_;
   std::vector<std::uint8_t> species_;               ///< by id
   std::array<Bins, 3> squares_{};                   ///< of what each pair adds
