@@ -6,35 +6,19 @@
 #include "sandglass/io/config.h"
 #include "sandglass/io/sample_state.h"
 #include "sandglass/io/seal.h"
-#include "sandglass/study/measurement.h"
+#include "sandglass/study/small_measurement.test.h"
 
 using namespace sandglass;
 
-namespace {
-
-constexpr double beat = 0.1;
-
-Config small_config() {
-  Config config;
-  config.run.intervals = 2;
-  config.observe.lags_per_decade = 2;
-  return config;
-}
-
-}  // namespace
-
 void write_seed(const std::filesystem::path& path) {
-  const Config config = small_config();
   State state = sample_state(3);
-  Measurement measurement(state, beat);
-  measurement.begin(plan_measurement(state.time(), 10, config.run.intervals, beat, config.observe.lags_per_decade,
-                                     config.observe.wavenumbers),
-                    state.tally);
+  Measurement measurement(state, small_beat);
+  measurement.begin(small_plan(state), state.tally);
   std::uint64_t measuring = 1;
   std::vector<FieldGroup> stored = measurement.fields();
   stored.push_back(measurement.plan_fields());
   stored.push_back({"run", {{"measuring", &measuring}}});
-  write_checkpoint(path, state, config_to_toml(config), stored);
+  write_checkpoint(path, state, config_to_toml(small_config()), stored);
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -44,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   read_or_refuse([&] {
     std::uint64_t measuring = 0;
     const Checkpoint checkpoint = read_checkpoint(file.path(), {{"run", {{"measuring", &measuring}}}});
-    Measurement measurement(checkpoint.state, beat);
+    Measurement measurement(checkpoint.state, small_beat);
     restore_fields(checkpoint, {measurement.plan_fields()});
     measurement.prepare_restore(measuring == 1, small_config());
     restore_fields(checkpoint, measurement.fields());

@@ -100,7 +100,9 @@ Figure thermodynamics(const Study& study) {
   figure.family = restitution_axis;
   const auto flow = [](const char* which) {
     return [which](const StatePoint& p) -> Measured {
-      return {p.number(std::string("energy/") + which).value / p.number("time").value, Measured{}.error};
+      const Measured energy = p.number(std::string("energy/") + which);
+      const double time = p.number("time").value;
+      return {energy.value / time, energy.error / time};
     };
   };
   figure.curves = against_density(study, flow("injected"));
@@ -108,7 +110,6 @@ Figure thermodynamics(const Study& study) {
     curve.name += ", dissipated", curve.line = Line::points;
     figure.curves.push_back(std::move(curve));
   }
-  for (Curve& curve : figure.curves) curve.error.clear();
   Figure pressure = part_of(figure, "b", "Pressure", density_axis, {"Z = pV/(NT)", "", true});
   pressure.family = restitution_axis;
   pressure.curves = against_density(study, [](const StatePoint& p) { return p.number("compressibility_factor"); });

@@ -8,25 +8,11 @@
 #include "sandglass/core/errors.h"
 #include "sandglass/io/sample_state.h"
 #include "sandglass/io/temporary_folder.h"
+#include "sandglass/study/small_measurement.test.h"
 
 using namespace sandglass;
 
 namespace {
-
-constexpr double beat = 0.1;
-
-Config small_config() {
-  Config config;
-  config.run.intervals = 2;
-  config.observe.lags_per_decade = 2;
-  return config;
-}
-
-MeasurementPlan small_plan(const State& state) {
-  const Config config = small_config();
-  return plan_measurement(state.time(), 10, config.run.intervals, beat, config.observe.lags_per_decade,
-                          config.observe.wavenumbers);
-}
 
 /// Restores a checkpoint of a begun measurement as a resumed run does, with one field of it changed to `value` on the
 /// way; what is said against it.
@@ -35,7 +21,7 @@ std::string complaint(const std::string& group, const std::string& field, T valu
   const TemporaryFolder folder;
   const auto path = folder / "checkpoint.h5";
   const State state = sample_state(5);
-  Measurement measurement(state, beat);
+  Measurement measurement(state, small_beat);
   measurement.begin(small_plan(state), state.tally);
   std::vector<FieldGroup> stored = measurement.fields();
   stored.push_back(measurement.plan_fields());
@@ -47,7 +33,7 @@ std::string complaint(const std::string& group, const std::string& field, T valu
   write_checkpoint(path, state, "", stored);
 
   return message_of<InputError>([&] {
-    Measurement restored(state, beat);
+    Measurement restored(state, small_beat);
     const Checkpoint checkpoint = read_checkpoint(path, {restored.plan_fields()});
     restored.prepare_restore(true, small_config());
     restore_fields(checkpoint, restored.fields());

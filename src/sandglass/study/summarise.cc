@@ -79,6 +79,8 @@ void describe_energy(const State& end, const TallyAverages& averages, const RunF
   const double disks = static_cast<double>(end.size());
   summary.energy.injected = averages.injected.value * summary.time;
   summary.energy.dissipated = averages.dissipated.value * summary.time;
+  summary.errors.emplace_back("energy_injected", averages.injected.error * summary.time);
+  summary.errors.emplace_back("energy_dissipated", averages.dissipated.error * summary.time);
   const double change = (facts.end_energy - facts.start_energy) / disks;
   const double turnover = std::fmax(std::fabs(summary.energy.injected), std::fabs(summary.energy.dissipated));
   const double imbalance = summary.energy.injected - summary.energy.dissipated - change;
