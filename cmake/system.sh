@@ -2,10 +2,10 @@
 
 # The one list of what the project needs from Debian. Building needs the first, running tests and micro-benchmarks the
 # second as well.
-build_packages=(g++ cmake ninja-build libcli11-dev libfmt-dev libtomlplusplus-dev nlohmann-json3-dev libhdf5-dev
+build_packages=(clang-14 g++ cmake ninja-build libcli11-dev libfmt-dev libtomlplusplus-dev nlohmann-json3-dev libhdf5-dev
                 librandom123-dev doctest-dev librapidcheck-dev)
-test_packages=(clang-format-14 clang-14 libclang-rt-14-dev libbenchmark-dev chromium fonts-dejavu-core python3
-               python3-numpy python3-h5py python3-matplotlib faketime slurmctld slurmd slurm-client munge parallel)
+test_packages=(clang-format-14 libclang-rt-14-dev libbenchmark-dev chromium fonts-dejavu-core python3 python3-numpy
+               python3-h5py python3-matplotlib faketime slurmctld slurmd slurm-client munge parallel)
 
 say() { printf '\n== %s\n' "$*"; }
 fail() { printf 'error: %s\n' "$*" >&2; exit 1; }

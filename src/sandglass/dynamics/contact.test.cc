@@ -50,10 +50,10 @@ TEST_CASE("a collision keeps momentum, reverses the normal velocity times eps, l
     a.time = b.time = 1;
     const double ma = 1 + uniform(random_words(1, Stream::probe, i, 0)[0]), mb = 1.7,
                  eps = 0.1 + 0.9 * uniform(i << 40);
-    const auto [rx, ry] = separation_at(a, b, 1, box);
-    const double r = std::sqrt(rx * rx + ry * ry);
-    const auto normal = [&] { return (rx * (b.vx - a.vx) + ry * (b.vy - a.vy)) / r; };
-    const auto tangential = [&] { return (rx * (b.vy - a.vy) - ry * (b.vx - a.vx)) / r; };
+    const Separation r = separation_at(a, b, 1, box);
+    const double distance = std::sqrt(r.x * r.x + r.y * r.y);
+    const auto normal = [&] { return (r.x * (b.vx - a.vx) + r.y * (b.vy - a.vy)) / distance; };
+    const auto tangential = [&] { return (r.x * (b.vy - a.vy) - r.y * (b.vx - a.vx)) / distance; };
     const auto energy = [&] { return 0.5 * ma * (a.vx * a.vx + a.vy * a.vy) + 0.5 * mb * (b.vx * b.vx + b.vy * b.vy); };
     if (normal() > 0) continue;
     const double before = normal(), along = tangential(), e = energy(), px = ma * a.vx + mb * b.vx;
@@ -63,7 +63,7 @@ TEST_CASE("a collision keeps momentum, reverses the normal velocity times eps, l
     CHECK(tangential() == doctest::Approx(along).epsilon(1e-12).scale(1e-2));
     CHECK(ma * a.vx + mb * b.vx == doctest::Approx(px).epsilon(1e-12).scale(1e-2));
     CHECK(e - energy() == doctest::Approx(impact.dissipated).epsilon(1e-12).scale(1e-2));
-    CHECK(impact.virial == doctest::Approx(-ma * mb / (ma + mb) * (1 + eps) * before * r).epsilon(1e-12));
+    CHECK(impact.virial == doctest::Approx(-ma * mb / (ma + mb) * (1 + eps) * before * distance).epsilon(1e-12));
   }
 }
 

@@ -11,7 +11,7 @@ inline namespace SANDGLASS_ISA {
 void Strip::predict(std::uint32_t i) { schedule(i, earliest_contact(i)); }
 
 /// The same after a search that was begun before other disks were settled.
-void Strip::settle(std::uint32_t i, Lanes begun) {
+[[gnu::always_inline]] inline void Strip::settle(std::uint32_t i, Lanes begun) {
   Foreseen contact = earliest_of_blocks(i, begun);
   if (contact.partner != no_disk && !comes_before_next_of(records_[contact.partner], contact.time, i)) [[unlikely]]
     contact = earliest_contact(i);
@@ -114,7 +114,7 @@ Strip::Lanes Strip::first_contacts(std::uint32_t i, const Flight& flight, std::u
 }
 
 /// The earliest of all blocks, the first of which is done.
-Strip::Foreseen Strip::earliest_of_blocks(std::uint32_t i, Lanes lanes) const {
+[[gnu::always_inline]] inline Strip::Foreseen Strip::earliest_of_blocks(std::uint32_t i, Lanes lanes) const {
   Foreseen earliest{never, no_disk};
   const Record& disk = records_[i];
   const std::uint32_t* list = neighbours_.list(i);
@@ -151,7 +151,7 @@ Strip::Foreseen Strip::earliest_contact(std::uint32_t i) const {
 
 /// Settles what comes next for disk i, given its earliest contact, and enters it into the calendar. A contact is taken
 /// only if it also comes before what the other disk has next; both may have to part from others.
-void Strip::schedule(std::uint32_t i, Foreseen contact) {
+[[gnu::always_inline]] inline void Strip::schedule(std::uint32_t i, Foreseen contact) {
   ++bookkeeping_.predictions;
   Record& disk = records_[i];
   const ColdRecord& cold = cold_[i];

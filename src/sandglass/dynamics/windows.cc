@@ -155,7 +155,7 @@ void IsaEngine::do_window(double end) {
 
 bool IsaEngine::any_failed() const {
   bool any = whole_.failed();
-  for (std::uint32_t s = 0; s < strips_; ++s) any |= first_[s].failed() | shifted_[s].failed();
+  for (std::uint32_t s = 0; s < strips_; ++s) any = any || first_[s].failed() || shifted_[s].failed();
   return any;
 }
 
@@ -216,7 +216,7 @@ void IsaEngine::keep() {
 void IsaEngine::undo(double start, double end) {
   ++bookkeeping.windows_undone;
   bool too_fast = whole_.too_fast();
-  for (std::uint32_t s = 0; s < strips_; ++s) too_fast |= first_[s].too_fast() | shifted_[s].too_fast();
+  for (std::uint32_t s = 0; s < strips_; ++s) too_fast = too_fast || first_[s].too_fast() || shifted_[s].too_fast();
   if (too_fast) caution_ *= 1.1;
   hand_in();
   drop_strip_logs();

@@ -13,7 +13,7 @@ namespace sandglass {
 namespace {
 
 void describe_motion(const Correlator& correlator, std::array<double, 2> exponent_range, Summary& summary) {
-  const auto [from, to] = exponent_range;
+  const double from = exponent_range[0], to = exponent_range[1];
   const auto fill = [&](Group group, Summary::Exponent& exponent, double& unit_time, const std::string& name) {
     const IntervalSeries series = correlator.mean_square_displacement(group);
     const Estimate fit = power_law_exponent(series, from, to);
