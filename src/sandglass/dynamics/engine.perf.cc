@@ -17,7 +17,7 @@
 namespace sandglass {
 
 #define SANDGLASS_OPERATIONS(isa)                                                          \
-  namespace isa {                                                                          \
+  inline namespace isa {                                                                   \
   void pop_and_push(benchmark::State& state, const double* leads, std::size_t size);       \
   void renew(benchmark::State& state, const State& here, const State& there, double skin); \
   void search(benchmark::State& state, Engine& engine);                                    \
