@@ -22,7 +22,7 @@ struct OverlappingPair {
 /// (by slot, in spatial order), the State everything else, including the tally that the engine adds to.
 class Engine {
  public:
-  virtual ~Engine() = default;
+  virtual ~Engine();
 
   /// Takes the records from state.disks, which it frees, and makes lists, predictions and calendar at state.now.
   /// `order[slot]` is the id that goes into a slot. Returns the deepest overlap beyond rounding, if any.

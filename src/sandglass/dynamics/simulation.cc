@@ -43,6 +43,8 @@ DiskName nth_by_id(DiskName* first, DiskName* last, std::size_t n) {
   return first[n];
 }
 
+Engine::~Engine() = default;
+
 std::vector<Event>* Engine::strip_log(std::size_t strip) {
   if (!log) return nullptr;
   if (strip_logs_.size() <= strip) strip_logs_.resize(strip + 1);
