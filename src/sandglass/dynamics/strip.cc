@@ -26,7 +26,6 @@ Strip::Strip(Tables& tables)
       neighbours_(tables.neighbours) {
   for (const int a : {small, big})
     for (const int b : {small, big}) masses_[a][b] = tables.masses[a][b];
-  for (std::uint32_t& partner : likely_partners_) partner = no_disk;
 }
 
 Strip::Strip(Tables& tables, Rows core, std::uint32_t reach, std::uint32_t lane) : Strip(tables) {
