@@ -5,64 +5,140 @@
 // frozen disk's record stays as its last event left it, and a later pass goes on from there.
 #include <cmath>
 
+#include "sandglass/dynamics/simd.h"
 #include "sandglass/dynamics/strip.h"
 
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
-/// When a known disk on its present flight can be touched by a frozen one at the earliest. With n the direction from
-/// where the other was frozen, the disk moves away from it at v.n or faster, while the other follows at top_speed.
-double Strip::earliest_touch(const Record& disk, std::uint32_t ghost) const {
-  const Record& other = records_[ghost];
+inline constexpr double beyond_rounding = 1 + 1e-9;  // contact distances are longer by more than all rounding
+
+#ifdef SANDGLASS_SIMD
+
+/// When known disks on their present flights can be touched by frozen ones (ghosts) at the earliest: t, or later. (rx,
+/// ry) is where the disk is at time t from where the ghost was when it was frozen, at its start. With n the direction
+/// of that, the disk moves away at v.n or faster, while the ghost follows at top_speed.
+[[gnu::always_inline]] inline Vector touch_times(Vector t, Vector start, Vector rx, Vector ry, Vector vx, Vector vy,
+                                                 Vector contact, Vector speed) {
+  const Vector zero = Vector::all(0), distance = sqrt(fma(rx, rx, ry * ry));
+  const Vector room = distance - fma(contact, Vector::all(beyond_rounding), speed * (t - start));
+  const Vector closing = speed - fma(rx, vx, ry * vy) / distance;
+  const Vector later = choose(zero < closing, t + room / closing, Vector::all(never));
+  return choose(zero < room, later, t);
+}
+
+/// When disk i, on its present flight, can be touched by a frozen one of its list at the earliest.
+double Strip::earliest_touch_of_listed(std::uint32_t i) const {
+  const Record& disk = records_[i];
+  const Vector x = Vector::all(disk.x), y = Vector::all(disk.y), vx = Vector::all(disk.vx), vy = Vector::all(disk.vy);
+  const Vector time = Vector::all(disk.time), radius = Vector::all(disk.radius), zero = Vector::all(0);
+  const Window& window = tables_->window;
+  double earliest = never;
+  const std::uint32_t* list = neighbours_.list(i);
+  for (std::uint32_t first = 0; first < disk.neighbour_count; first += Vector::width, list += Vector::width) {
+    Vector other[8];  // columns of the record: x, y, vx, vy, time, next_time, radius
+    load_columns(records_, list, other);
+    const Mask frozen = (Vector::all(nobodys) < other[5]) & (other[5] < zero);
+    if (frozen.lanes() == 0) continue;
+    const Vector start = Vector::all(window.start - 1) - other[5], t = max(time, start);
+    const Vector flight = t - time, ghost_flight = start - other[4];
+    const Vector rx = nearest(fma(vx, flight, x) - fma(other[2], ghost_flight, other[0]), box_);
+    const Vector ry = nearest(fma(vy, flight, y) - fma(other[3], ghost_flight, other[1]), box_);
+    const Mask is_big = other[6] == Vector::all(tables_->state.mixture.radius[big]);
+    const Vector speed = choose(is_big, Vector::all(window.top_speed[big]), Vector::all(window.top_speed[small]));
+    const Vector touch = touch_times(t, start, rx, ry, vx, vy, radius + other[6], speed);
+    earliest = std::fmin(earliest, smallest(choose(frozen, touch, Vector::all(never))));
+  }
+  return earliest;
+}
+
+/// Calls visit(k, t) for every known disk k of the list of the frozen disk i, which it can touch at t at the earliest.
+template <class Visit>
+[[gnu::always_inline]] inline void Strip::visit_touched(std::uint32_t i, Visit&& visit) const {
+  const Record& ghost = records_[i];
+  const double started = since(ghost);
+  const Position at = position_at(ghost, started);
+  const Vector x = Vector::all(at.x), y = Vector::all(at.y), start = Vector::all(started), zero = Vector::all(0);
+  const Vector radius = Vector::all(ghost.radius), speed = Vector::all(tables_->window.top_speed[ghost.species]);
+  const std::uint32_t* list = neighbours_.list(i);
+  for (std::uint32_t first = 0; first < ghost.neighbour_count; first += Vector::width, list += Vector::width) {
+    Vector other[8];
+    load_columns(records_, list, other);
+    const Vector t = max(other[4], start), flight = t - other[4];
+    const Vector rx = nearest(fma(other[2], flight, other[0]) - x, box_);
+    const Vector ry = nearest(fma(other[3], flight, other[1]) - y, box_);
+    alignas(64) double touch[Vector::width];
+    touch_times(t, start, rx, ry, other[2], other[3], radius + other[6], speed).store(touch);
+    for (unsigned known = (zero <= other[5]).lanes(); known != 0; known &= known - 1) {
+      const auto lane = static_cast<unsigned>(__builtin_ctz(known));
+      visit(list[lane], touch[lane]);
+    }
+  }
+}
+
+#else
+
+/// When a known disk on its present flight can be touched by a frozen one at the earliest (see touch_times above).
+double Strip::earliest_touch(const Record& disk, const Record& ghost) const {
   const double start = since(ghost), t = disk.time > start ? disk.time : start;
-  const Position at = position_at(disk, t), other_at = position_at(other, start);
-  const double rx = box_.nearest(at.x - other_at.x), ry = box_.nearest(at.y - other_at.y);
-  const double distance = std::sqrt(rx * rx + ry * ry), contact = disk.radius + other.radius;
-  const double speed = tables_->window.top_speed[other.species];
-  const double room = distance - contact * (1 + 1e-9) - speed * (t - start);  // 1e-9: more than all rounding
+  const Position at = position_at(disk, t), ghost_at = position_at(ghost, start);
+  const double rx = box_.nearest(at.x - ghost_at.x), ry = box_.nearest(at.y - ghost_at.y);
+  const double distance = std::sqrt(rx * rx + ry * ry), contact = disk.radius + ghost.radius;
+  const double speed = tables_->window.top_speed[ghost.species];
+  const double room = distance - contact * beyond_rounding - speed * (t - start);
   if (!(room > 0)) return t;
   const double closing = speed - (rx * disk.vx + ry * disk.vy) / distance;
   return closing > 0 ? t + room / closing : never;
 }
 
-/// When disk i, on its present flight, must be frozen; never if not in this window.
-double Strip::freezing_time(std::uint32_t i) {
-  const Record& disk = records_[i];
-  if (!first_pass_) {
-    check_speed(disk);
-    if (!frozen_about_) return never;
-  }
+double Strip::earliest_touch_of_listed(std::uint32_t i) const {
   double earliest = never;
   const std::uint32_t* const list = neighbours_.list(i);
-  for (std::uint32_t n = 0; n < disk.neighbour_count; ++n)
-    if (is_frozen(records_[list[n]])) earliest = std::fmin(earliest, earliest_touch(disk, list[n]));
+  for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n)
+    if (is_frozen(records_[list[n]])) earliest = std::fmin(earliest, earliest_touch(records_[i], records_[list[n]]));
+  return earliest;
+}
+
+template <class Visit>
+[[gnu::always_inline]] inline void Strip::visit_touched(std::uint32_t i, Visit&& visit) const {
+  const std::uint32_t* const list = neighbours_.list(i);
+  for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n)
+    if (!is_frozen(records_[list[n]])) visit(list[n], earliest_touch(records_[list[n]], records_[i]));
+}
+
+#endif
+
+/// When disk i, on its present flight, must be frozen; never if not in this window.
+double Strip::freezing_time(std::uint32_t i) {
+  if (!first_pass_) {
+    check_speed(records_[i]);
+    if (!frozen_about_) return never;
+  }
+  const double earliest = earliest_touch_of_listed(i);
   return earliest <= tables_->window.end ? earliest : never;
 }
 
 void Strip::freeze(std::uint32_t i, double t) {
   Record& disk = records_[i];
   if (disk.partner != no_disk) part(disk.partner);
-  set_next(disk, frozen, Next::freeze, no_disk);
-  const double after = (t - tables_->window.start) * (1 - 1e-6);  // so that it is not rounded up
-  cold_[i].frozen_at = after > 0 ? static_cast<float>(after) : 0;
+  const double after = (t - tables_->window.start) * (1 - 1e-6) - 1e-15;  // so that it is not rounded up
+  set_next(disk, frozen_after(after > 0 ? after : 0), Next::freeze, no_disk);
+  cold_[i].concerned = true;
   left_.push_back({i, row(i)});
   frozen_about_ = true;
   check_speed(disk);
   expect_kick(i);
-  const std::uint32_t* const list = neighbours_.list(i);
-  for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) {
-    const std::uint32_t k = list[n];
-    if (is_frozen(records_[k])) continue;
-    if (is_done(k)) continue;  // with this window, and never met in it
+  visit_touched(i, [this](std::uint32_t k, double touch) {
+    if (is_done(k)) return;  // with this window, and never met in it
     concern(k);
-    freeze_no_later(k, earliest_touch(records_[k], i));
-  }
+    freeze_no_later(k, touch);
+  });
 }
 
 /// From now on disk i must look out for frozen ones.
 void Strip::concern(std::uint32_t i) {
-  if (cold_[i].frozen_at == concerned) return;
-  cold_[i].frozen_at = concerned;
+  if (cold_[i].concerned) return;
+  cold_[i].concerned = true;
   concerned_.push_back(i);
 }
 
@@ -93,8 +169,8 @@ void Strip::check_speed(const Record& disk) {
 void Strip::freeze_rows(Rows rows) {
   begin_pass();
   neighbours_.grid().visit_rows(rows.first, rows.count, [&](std::uint32_t i) {
-    set_next(records_[i], frozen, Next::freeze, no_disk);
-    cold_[i].frozen_at = 0;
+    set_next(records_[i], frozen_after(0), Next::freeze, no_disk);
+    cold_[i].concerned = true;
     left_.push_back({i, row(i)});
     check_speed(records_[i]);
   });
@@ -113,7 +189,7 @@ void Strip::begin_pass() {
 void Strip::first_pass() {
   auto look_out = [this](std::uint32_t i) {
     concern_if_beside_frozen(i);
-    if (cold_[i].frozen_at == unconcerned) return;
+    if (!cold_[i].concerned) return;
     const std::uint32_t partner = records_[i].partner;
     if (partner != no_disk && is_frozen(records_[partner])) part(i);
     freeze_no_later(i, freezing_time(i));
@@ -153,7 +229,7 @@ void Strip::resume(const Strip& other) {
       if (kicking.hold(disk.row)) expect_kick(disk.slot);
     } else if (is_frozen(records_[disk.slot])) {
       set_next(records_[disk.slot], never, Next::review, no_disk);
-      concern(disk.slot);
+      concerned_.push_back(disk.slot);
       enter_next_kick(disk.slot);
       ++resumed_;
     }
@@ -175,7 +251,7 @@ void Strip::later_pass() {
 
 void Strip::end_pass() {
   for (const std::uint32_t i : concerned_)
-    if (!is_frozen(records_[i])) cold_[i].frozen_at = unconcerned;
+    if (!is_frozen(records_[i])) cold_[i].concerned = false;
   concerned_.clear();
 }
 

@@ -20,12 +20,13 @@ double Strip::gap_at(std::uint32_t i, double t, std::uint32_t k, double t_k) con
 /// it was not near a disk that kicked at time t, or it would have been frozen by then.
 bool Strip::is_done_at(std::uint32_t k, double t) const {
   if (first_pass_) return false;
-  return is_done(k) || records_[k].time > t || (is_frozen(records_[k]) && since(k) > t);
+  return is_done(k) || records_[k].time > t || (is_frozen(records_[k]) && since(records_[k]) > t);
 }
 
 /// How far a frozen disk may have come until time t, and a bit.
 double Strip::growth(std::uint32_t frozen_disk, double t) const {
-  return tables_->window.top_speed[records_[frozen_disk].species] * (t - since(frozen_disk)) + 1e-9 * box_.length;
+  return tables_->window.top_speed[records_[frozen_disk].species] * (t - since(records_[frozen_disk])) +
+         1e-9 * box_.length;
 }
 
 /// The events of the window, and what happens to disks when the clocks of frozen ones ring.
@@ -61,13 +62,13 @@ void Strip::expect_kick(std::uint32_t frozen_disk) {
 void Strip::on_frozen_kick(const FrozenKick& kick) {
   const std::uint32_t u = kick.slot;
   const Record& disk = records_[u];
-  const double t = kick.time, start = since(u), grown = growth(u, t);
+  const double t = kick.time, start = since(records_[u]), grown = growth(u, t);
   const std::uint32_t* const list = neighbours_.list(u);
   double nearest = never;  // no nearer one has a larger gap
   auto bound = [&](std::uint32_t k) {
     if (k == u || is_done_at(k, t)) return;
     if (is_frozen(records_[k]))
-      nearest = std::fmin(nearest, gap_at(u, start, k, since(k)) + grown + growth(k, t));
+      nearest = std::fmin(nearest, gap_at(u, start, k, since(records_[k])) + grown + growth(k, t));
     else
       nearest = std::fmin(nearest, gap_at(u, start, k, t) + grown);
   };

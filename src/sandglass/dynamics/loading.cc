@@ -13,7 +13,7 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
     tables_.records = Array<Record>(size + 1);
     tables_.cold = Array<ColdRecord>(size);
     // Fills the empty places of neighbour lists: every contact would come after what it has next.
-    tables_.records[size] = {0, 0, 0, 0, 0, frozen, 0, no_disk, Next::review, small, 0};
+    tables_.records[size] = {0, 0, 0, 0, 0, nobodys, 0, no_disk, Next::review, small, 0};
   }
   for (std::uint32_t i = 0; i < size; ++i) {
     const Disk& disk = state_.disks[order[i]];
@@ -27,7 +27,7 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
                        .image_x = disk.image_x,
                        .image_y = disk.image_y,
                        .id = order[i],
-                       .frozen_at = unconcerned};
+                       .concerned = false};
   }
   state_.disks = std::vector<Disk>();  // gives the memory back
   windows_done_ = undone_ = 0;
@@ -57,7 +57,7 @@ OverlappingPair IsaEngine::make_lists() {
     std::int32_t image_x = 0, image_y = 0;
     advance(now, image_x, image_y, state_.now, tables_.box);
     tables_.cold[i].centre = whole_.neighbours().grid().point(now.x, now.y);
-    tables_.cold[i].frozen_at = unconcerned;
+    tables_.cold[i].concerned = false;
   }
   OverlappingPair deepest;
   for (std::uint32_t i = 0; i < tables_.size; ++i) {
@@ -102,7 +102,7 @@ double IsaEngine::default_cell_size() const {
   const double contact = radius[small] + radius[big];
   const double cell = std::sqrt((contact * contact > 0.5 * area_per_disk ? 3 : 2) * area_per_disk);
   const double range = 2 * std::fmax(radius[small], radius[big]) + default_skin();
-  return crew ? std::fmin(cell, (1 + 1e-4) * 2 / 3 * range) : cell;
+  return crew ? (1 + 1e-4) * 2 / std::round(2 * range / cell) * range : cell;
 }
 
 /// A calendar for `size` disks whose next events are `lead` ahead. The more events in a window, the more are entered

@@ -13,15 +13,13 @@ inline namespace SANDGLASS_ISA {
 Smallest Strip::smallest_gap(const Record& disk, const std::uint32_t* list, double t) const {
   const Position at = position_at(disk, t);
   const Vector x = Vector::all(at.x), y = Vector::all(at.y);
-  const Vector length = Vector::all(box_.length), inverse = Vector::all(box_.inverse);
-  auto nearest = [&](Vector difference) { return fnma(length, nearest_integer(difference * inverse), difference); };
   Vector other[8];  // columns of the record: x, y, vx, vy, time, next_time, radius
   load_columns(records_, list, other);
   const Vector other_flight = Vector::all(t) - other[4];
-  const Vector rx = nearest(fma(other[2], other_flight, other[0]) - x);
-  const Vector ry = nearest(fma(other[3], other_flight, other[1]) - y);
+  const Vector rx = nearest(fma(other[2], other_flight, other[0]) - x, box_);
+  const Vector ry = nearest(fma(other[3], other_flight, other[1]) - y, box_);
   const Vector gap = sqrt(fma(rx, rx, ry * ry)) - (Vector::all(disk.radius) + other[6]);
-  const Mask somebody = Vector::all(-never) < other[5];  // not the record that fills up lists
+  const Mask somebody = Vector::all(nobodys) < other[5];  // not the record that fills up lists
   const Vector candidate = choose(somebody, gap, Vector::all(never));
   const double smallest_of_all = smallest(candidate);
   return {smallest_of_all, (candidate == Vector::all(smallest_of_all)).lanes()};
@@ -59,7 +57,7 @@ std::uint32_t Strip::nearest_partner(std::uint32_t i, double t) {
   auto visit = [&](std::uint32_t k) {
     if (k == i || is_done_at(k, t)) return;
     if (is_frozen(records_[k])) {
-      rival_gap = std::fmin(rival_gap, gap_at(i, t, k, since(k)) - growth(k, t));
+      rival_gap = std::fmin(rival_gap, gap_at(i, t, k, since(records_[k])) - growth(k, t));
       return;
     }
     const double gap = surface_gap(disk, records_[k], disk.radius + records_[k].radius, t, box_);
@@ -73,7 +71,7 @@ std::uint32_t Strip::nearest_partner(std::uint32_t i, double t) {
   };
 #ifdef SANDGLASS_SIMD
   const std::uint32_t* const list = neighbours_.list(i);
-  const bool no_frozen_one_listed = cold_[i].frozen_at == unconcerned;
+  const bool no_frozen_one_listed = !cold_[i].concerned;
   for (std::uint32_t first = 0; no_frozen_one_listed && first < disk.neighbour_count; first += Vector::width) {
     const auto [gap, lanes] = smallest_gap(disk, list + first, t);
     if (gap > best_gap) continue;

@@ -74,15 +74,14 @@ template <class Amend>
                                                                     const std::uint32_t* list, Amend&& amend) const {
   const Vector x = Vector::all(disk.x), y = Vector::all(disk.y), vx = Vector::all(disk.vx), vy = Vector::all(disk.vy);
   const Vector time = Vector::all(disk.time), radius = Vector::all(disk_radius);
-  const Vector length = Vector::all(box_.length), inverse = Vector::all(box_.inverse), zero = Vector::all(0);
-  auto nearest = [&](Vector difference) { return fnma(length, nearest_integer(difference * inverse), difference); };
+  const Vector zero = Vector::all(0);
   Vector other[8];
   load_columns(records_, list, other);
   const Mask counts = amend(other);
   const Vector t = max(time, other[4]);
   const Vector flight = t - time, other_flight = t - other[4];
-  const Vector rx = nearest(fma(other[2], other_flight, other[0]) - fma(vx, flight, x));
-  const Vector ry = nearest(fma(other[3], other_flight, other[1]) - fma(vy, flight, y));
+  const Vector rx = nearest(fma(other[2], other_flight, other[0]) - fma(vx, flight, x), box_);
+  const Vector ry = nearest(fma(other[3], other_flight, other[1]) - fma(vy, flight, y), box_);
   const Vector ux = other[2] - vx, uy = other[3] - vy;
   const Vector ru = fma(rx, ux, ry * uy), contact = radius + other[6];
   const Vector c = fma(rx, rx, fms(ry, ry, contact * contact));
@@ -161,7 +160,7 @@ Strip::Foreseen Strip::earliest_contact(std::uint32_t i) const {
     if (time < t) t = time, next = what;
   };
   consider(cold.next_kick, Next::kick);
-  if (cold.frozen_at != unconcerned) [[unlikely]]
+  if (cold.concerned) [[unlikely]]
     consider(freezing_time(i), Next::freeze);
   // Expiry and transit cost a root and divisions; most often it is plain that they do not come first.
   if (!within_leash(disk, cold, t)) consider(std::fmin(list_expiry(disk, cold), calendar_.horizon(i)), Next::review);

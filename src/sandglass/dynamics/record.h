@@ -54,15 +54,13 @@ struct Flight {
   set_next(disk, std::numeric_limits<double>::infinity(), Next::review, no_disk);
 }
 
-/// A frozen disk has this as the time of its next event: no search finds a contact with it, since that would come
-/// later.
-inline constexpr double frozen = -std::numeric_limits<double>::infinity();
+/// A frozen disk has this as the time of its next event, which says how long after the start of the window it has been
+/// frozen. No search finds a contact with it, since that would come later.
+[[gnu::always_inline]] inline double frozen_after(double wait) { return -1 - wait; }
+[[gnu::always_inline]] inline bool is_frozen(const Record& disk) { return disk.next_time < 0; }
 
-[[gnu::always_inline]] inline bool is_frozen(const Record& disk) { return disk.next_time == frozen; }
-
-/// For ColdRecord::frozen_at: a disk that no frozen one can reach, and one that must look out for them.
-inline constexpr float unconcerned = std::numeric_limits<float>::infinity();
-inline constexpr float concerned = std::numeric_limits<float>::max();
+/// The time of the next event of the record that fills up lists.
+inline constexpr double nobodys = -std::numeric_limits<double>::infinity();
 
 /// The cold half.
 struct ColdRecord {
@@ -71,7 +69,7 @@ struct ColdRecord {
   std::uint64_t kick_count;
   std::int32_t image_x, image_y;
   std::uint32_t id;
-  float frozen_at;  ///< when the disk was frozen, counted from the start of the window; or as above
+  bool concerned;  ///< in this window the disk is frozen, or must look out for frozen ones
 };
 static_assert(sizeof(ColdRecord) == 48);
 

@@ -36,6 +36,7 @@ struct Vector {
   static constexpr unsigned width = 8;
   __m512d v;
   static Vector all(double x) { return {_mm512_set1_pd(x)}; }
+  void store(double* out) const { _mm512_store_pd(out, v); }
   friend Vector operator+(Vector a, Vector b) { return {_mm512_add_pd(a.v, b.v)}; }
   friend Vector operator-(Vector a, Vector b) { return {_mm512_sub_pd(a.v, b.v)}; }
   friend Vector operator*(Vector a, Vector b) { return {_mm512_mul_pd(a.v, b.v)}; }
@@ -103,6 +104,7 @@ struct Vector {
   static constexpr unsigned width = 4;
   __m256d v;
   static Vector all(double x) { return {_mm256_set1_pd(x)}; }
+  void store(double* out) const { _mm256_store_pd(out, v); }
   friend Vector operator+(Vector a, Vector b) { return {_mm256_add_pd(a.v, b.v)}; }
   friend Vector operator-(Vector a, Vector b) { return {_mm256_sub_pd(a.v, b.v)}; }
   friend Vector operator*(Vector a, Vector b) { return {_mm256_mul_pd(a.v, b.v)}; }
@@ -154,6 +156,12 @@ inline void load_columns(const Row* rows, const std::uint32_t* list, Vector (&ou
 }
 
 #endif
+
+/// Box::nearest.
+template <class Box>
+[[gnu::always_inline]] inline Vector nearest(Vector difference, const Box& box) {
+  return fnma(Vector::all(box.length), nearest_integer(difference * Vector::all(box.inverse)), difference);
+}
 
 /// Which of eight entries, aligned to 32 bytes, equal `value`.
 inline unsigned equal_lanes(const std::uint32_t* entries, std::uint32_t value) {

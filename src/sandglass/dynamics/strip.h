@@ -162,20 +162,23 @@ class alignas(128) Strip {
   void freeze(std::uint32_t i, double t);
   void freeze_no_later(std::uint32_t i, double t);
   [[nodiscard]] double freezing_time(std::uint32_t i);
-  [[nodiscard]] double earliest_touch(const Record& disk, std::uint32_t ghost) const;
+  [[nodiscard]] double earliest_touch(const Record& disk, const Record& ghost) const;
+  [[nodiscard]] double earliest_touch_of_listed(std::uint32_t i) const;
+  template <class Visit>
+  void visit_touched(std::uint32_t i, Visit&& visit) const;
   void concern(std::uint32_t i);
   void concern_if_beside_frozen(std::uint32_t i);
   void check_speed(const Record& disk);
   void run_window();
   void expect_kick(std::uint32_t frozen_disk);
   void on_frozen_kick(const FrozenKick& kick);
-  [[nodiscard]] double since(std::uint32_t i) const {
-    return tables_->window.start + static_cast<double>(cold_[i].frozen_at);
+  [[nodiscard]] double since(const Record& frozen_disk) const {
+    return tables_->window.start + frozen_after(frozen_disk.next_time);
   }
   [[nodiscard]] double gap_at(std::uint32_t i, double t, std::uint32_t k, double t_k) const;
   [[nodiscard]] bool is_done_at(std::uint32_t k, double t) const;
   [[nodiscard]] double growth(std::uint32_t frozen_disk, double t) const;
-  [[nodiscard]] bool is_done(std::uint32_t i) const { return !first_pass_ && cold_[i].frozen_at == unconcerned; }
+  [[nodiscard]] bool is_done(std::uint32_t i) const { return !first_pass_ && !cold_[i].concerned; }
   [[nodiscard]] std::uint32_t row(std::uint32_t i) const { return neighbours_.grid().row_of(cold_[i].centre); }
 
   [[nodiscard]] bool before(std::uint32_t a, std::uint32_t b) const;
@@ -214,7 +217,7 @@ class alignas(128) Strip {
   GrowingArray<FrozenKick> frozen_kicks_;  // a heap
   GrowingArray<std::uint32_t> suspects_;   // may be nearest to a frozen disk that kicks
   GrowingArray<Left> left_;                // frozen in this pass
-  GrowingArray<std::uint32_t> concerned_;  // as frozen_at says, and not always so
+  GrowingArray<std::uint32_t> concerned_;  // in this pass
   std::uint32_t resumed_ = 0;              // frozen in an earlier pass, not in this one
   GrowingArray<Entry> outbox_;
 };

@@ -186,6 +186,8 @@ void IsaEngine::look_for_top_speed() {
     top_speed_[species] = caution_ * (tuning_.top_speed > 0 ? tuning_.top_speed * thermal
                                                             : std::fmax(6.25 * thermal, 1.1 * std::sqrt(fastest)));
   }
+  if (state_.mixture.radius[small] == state_.mixture.radius[big])  // by which species are told apart
+    top_speed_[small] = top_speed_[big] = std::fmax(top_speed_[small], top_speed_[big]);
 }
 
 /// Keeps the disks as they are, for undo. The calendars are made anew, before a disk that has an entry in one can have
