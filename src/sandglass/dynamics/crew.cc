@@ -1,5 +1,7 @@
 #include "sandglass/dynamics/crew.h"
 
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
@@ -29,14 +31,29 @@ struct Crew::Threads {
     }
   }
 
+  // Hints for a glance before going to sleep; what is so is decided under the mutex.
+  std::atomic<std::uint64_t> announced{0};
+  std::atomic<unsigned> unfinished{0};
+
+  /// Waits a moment for `come`, giving way to others. Most often all end at nearly the same time, and being woken takes
+  /// longer than that.
+  template <class Come>
+  static void watch_briefly(Come&& come) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(50);
+    while (!come() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+  }
+
   void live(unsigned thread) {
     std::uint64_t seen = 0;
-    for (std::unique_lock lock(mutex);;) {
+    for (;;) {
+      watch_briefly([&] { return announced.load(std::memory_order_relaxed) != seen; });
+      std::unique_lock lock(mutex);
       begun.wait(lock, [&] { return over || (round != seen && thread < count); });
       if (over) return;
       seen = round;
       lock.unlock();
       perform(thread);
+      unfinished.fetch_sub(1, std::memory_order_relaxed);
       lock.lock();
       if (--busy == 0) done.notify_one();
     }
@@ -66,9 +83,12 @@ void Crew::run(unsigned count, Call call, void* context) {
     all.busy = count - 1;
     all.call = call;
     all.context = context;
+    all.unfinished = count - 1;
+    all.announced = all.round;
   }
   all.begun.notify_all();
   all.perform(0);
+  Threads::watch_briefly([&] { return all.unfinished.load(std::memory_order_relaxed) == 0; });
   std::unique_lock lock(all.mutex);
   all.done.wait(lock, [&] { return all.busy == 0; });
   std::exception_ptr first;
