@@ -126,6 +126,10 @@ void Strip::freeze(std::uint32_t i, double t) {
   cold_[i].concerned = true;
   left_.push_back({i, row(i)});
   frozen_about_ = true;
+  if (!whole_ && tables_->zone(row(i)) != Tables::Zone::near_lane) [[unlikely]] {
+    failed_ = too_deep_ = true;
+    end_ = tables_->window.start;  // stops the loop
+  }
   check_speed(disk);
   expect_kick(i);
   visit_touched(i, [this](std::uint32_t k, double touch) {
@@ -180,7 +184,7 @@ void Strip::begin_pass() {
   neighbours_.refresh();
   left_.clear();
   frozen_kicks_.clear();
-  failed_ = too_fast_ = false;
+  failed_ = too_fast_ = too_deep_ = false;
   until_stall_check_ = 1;
   progress_time_ = -never;
 }

@@ -78,8 +78,8 @@ void Strip::on_frozen_kick(const FrozenKick& kick) {
   const auto [x, y] = position_at(disk, start);
   const double bodies = disk.radius + largest_radius();
   if (!whole_) {  // another strip cannot know of this kick: it must not reach there
-    const double room = grid.height(lane_ / 2) - leash_;
-    auto within_room = [&] { return nearest + grown + bodies + leash_ < room; };
+    const double room = grid.height(lane_ / 2) - leash_[true];
+    auto within_room = [&] { return nearest + grown + bodies + leash_[true] < room; };
     if (!within_room()) grid.visit_near(x, y, room, bound);  // in a dilute system lists may be empty
     if (!within_room()) {
       failed_ = true;
@@ -93,11 +93,11 @@ void Strip::on_frozen_kick(const FrozenKick& kick) {
   };
   const double dx = grid.offset(cold_[u].centre.x, x), dy = grid.offset(cold_[u].centre.y, y);
   // Unlisted disks have list centres at least a skin beyond contact from the frozen one's.
-  const double unlisted = leash_ + tables_->window.way - std::sqrt(dx * dx + dy * dy) - grown;
+  const double unlisted = leash_[false] + tables_->window.way - std::sqrt(dx * dx + dy * dy) - grown;
   if (nearest < unlisted)
     for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) suspect(list[n]);
   else
-    grid.visit_near(x, y, nearest + grown + bodies + leash_ + 1e-9, suspect);
+    grid.visit_near(x, y, nearest + grown + bodies + leash_[true] + 1e-9, suspect);
   for (const std::uint32_t k : suspects_) freeze(k, t);
 }
 

@@ -36,7 +36,7 @@ Fault IsaEngine::fault_of(std::uint32_t i) {
   const auto [x, y] = position_at(disk, state_.now);
   const double dx = grid.offset(cold.centre.x, x), dy = grid.offset(cold.centre.y, y);
   // The grid rounds positions, in a large box by more than anything else; the leash leaves room for that.
-  if (std::sqrt(dx * dx + dy * dy) > tables_.leash + 1e-9 + 4 * grid.unit()) return Fault::astray;
+  if (std::sqrt(dx * dx + dy * dy) > tables_.leash[cold.roomy] + 1e-9 + 4 * grid.unit()) return Fault::astray;
   return Fault::none;
 }
 

@@ -27,7 +27,8 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
                        .image_x = disk.image_x,
                        .image_y = disk.image_y,
                        .id = order[i],
-                       .concerned = false};
+                       .concerned = false,
+                       .roomy = true};
   }
   state_.disks = std::vector<Disk>();  // gives the memory back
   windows_done_ = undone_ = 0;
@@ -45,8 +46,9 @@ OverlappingPair IsaEngine::make_lists() {
   tables_.neighbours = NeighbourTable(tables_.size, tables_.box, state_.mixture, default_skin(), default_cell_size());
   const Neighbours neighbours(tables_.neighbours);
   strips_ = strips_for_threads(neighbours);
-  tables_.leash = neighbours.leash();
-  if (strips_ > 1) tables_.leash -= way() / 2;
+  tables_.leash[true] = neighbours.leash();
+  tables_.leash[false] = tables_.leash[true] - (strips_ > 1 ? way() / 2 : 0);
+  make_zones(neighbours);
   whole_.hand_in(state_.tally, bookkeeping);
   whole_ = Strip(tables_);
   whole_.log = log;
@@ -56,8 +58,8 @@ OverlappingPair IsaEngine::make_lists() {
     Flight now(records[i]);
     std::int32_t image_x = 0, image_y = 0;
     advance(now, image_x, image_y, state_.now, tables_.box);
-    tables_.cold[i].centre = whole_.neighbours().grid().point(now.x, now.y);
     tables_.cold[i].concerned = false;
+    whole_.set_centre(i, whole_.neighbours().grid().point(now.x, now.y));
   }
   OverlappingPair deepest;
   for (std::uint32_t i = 0; i < tables_.size; ++i) {

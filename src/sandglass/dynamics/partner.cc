@@ -39,13 +39,13 @@ Strip::Nearest Strip::nearest_listed(std::uint32_t i, double t) const {
 Strip::Nearest Strip::nearest_listed(std::uint32_t, double) const { return {no_disk, never}; }
 #endif
 
-/// Unlisted disks have list centres at least R_i + R_j + skin from that of disk i, and skin = 2 leash + way; each of
-/// the two has moved by leash at most, a frozen one by way as well.
+/// Unlisted disks have list centres at least R_i + R_j + skin from that of disk i, and have moved from there by half
+/// the skin at most; or, where some may be frozen and are on the short leash, by that and the way of a frozen one.
 bool Strip::nobody_unlisted_within(double gap, std::uint32_t i, double t) const {
   const auto [x, y] = position_at(records_[i], t);
   const Grid& grid = neighbours_.grid();
   const double dx = grid.offset(cold_[i].centre.x, x), dy = grid.offset(cold_[i].centre.y, y);
-  return gap < leash_ - std::sqrt(dx * dx + dy * dy);
+  return gap < leash_[cold_[i].roomy] - std::sqrt(dx * dx + dy * dy);
 }
 
 /// The disk with the smallest gap of surfaces to disk i at time t; the smaller id at equal gaps. In a window: among
@@ -89,9 +89,9 @@ std::uint32_t Strip::nearest_partner(std::uint32_t i, double t) {
     const auto [x, y] = position_at(disk, t);
     const Grid& grid = neighbours_.grid();
     ++bookkeeping_.wide_partner_searches;
-    const double margin = disk.radius + largest_radius() + leash_ + tables_->window.way + 1e-9;
-    const double room = whole_ ? never : grid.height(lane_) - leash_;  // what lies beyond is another strip's
-    for (double radius = margin + 2 * leash_;; radius *= 1.5) {
+    const double margin = disk.radius + largest_radius() + leash_[true] + tables_->window.way + 1e-9;
+    const double room = whole_ ? never : grid.height(lane_) - leash_[true];  // what lies beyond is another strip's
+    for (double radius = margin + 2 * leash_[true];; radius *= 1.5) {
       if (best != no_disk && best_gap + margin < radius) radius = best_gap + margin;
       if (!(radius < room)) return undecided;
       const bool all = grid.visit_near(x, y, radius, visit);
@@ -112,7 +112,7 @@ std::uint32_t Strip::partner_within_reach(std::uint32_t i, double t, const Kick&
     candidates_.push_back({cold_[k].id, k});
   };
   const auto [x, y] = position_at(disk, t);
-  const double radius = tables_->state.drive.reach * (disk.radius + largest_radius()) + leash_ + 1e-9;
+  const double radius = tables_->state.drive.reach * (disk.radius + largest_radius()) + leash_[true] + 1e-9;
   neighbours_.grid().visit_near(x, y, radius, visit);
   if (candidates_.empty()) return no_disk;
   return nth_by_id(candidates_.begin(), candidates_.end(), kick.pick(candidates_.size())).slot;

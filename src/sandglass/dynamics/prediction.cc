@@ -187,7 +187,7 @@ bool Strip::within_leash(const Record& disk, const ColdRecord& cold, double t) c
   const double flight = t - disk.time;
   const double dx = grid.offset(cold.centre.x, disk.x) + disk.vx * flight;
   const double dy = grid.offset(cold.centre.y, disk.y) + disk.vy * flight;
-  return dx * dx + dy * dy < 0.999 * leash_ * leash_;
+  return dx * dx + dy * dy < 0.999 * leash_[cold.roomy] * leash_[cold.roomy];
 }
 
 /// When the disk, flying freely, leaves the circle of its leash: the later root, since its record may be older than its
@@ -198,7 +198,8 @@ double Strip::list_expiry(const Record& disk, const ColdRecord& cold) const {
   const double vv = disk.vx * disk.vx + disk.vy * disk.vy;
   if (vv == 0) return never;
   const double dv = dx * disk.vx + dy * disk.vy;
-  const double square = dv * dv + vv * (leash_ * leash_ - dx * dx - dy * dy);
+  const double leash = leash_[cold.roomy];
+  const double square = dv * dv + vv * (leash * leash - dx * dx - dy * dy);
   return disk.time + (std::sqrt(square > 0 ? square : 0) - dv) / vv;
 }
 

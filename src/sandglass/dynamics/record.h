@@ -70,6 +70,7 @@ struct ColdRecord {
   std::int32_t image_x, image_y;
   std::uint32_t id;
   bool concerned;  ///< in this window the disk is frozen, or must look out for frozen ones
+  bool roomy;      ///< which leash it is on, see Tables
 };
 static_assert(sizeof(ColdRecord) == 48);
 

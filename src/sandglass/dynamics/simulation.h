@@ -21,6 +21,7 @@ struct Tuning {
   // For tests of what several threads do:
   std::uint32_t strip_rows = 0;  ///< least height of a strip, in rows of the grid
   double window_part = 0;        ///< how far the fastest disk may fly in a window, in skins
+  double freezing_depth = 0;     ///< how far from the lanes between strips disks are thought to be frozen, in R_s
   double top_speed = 0;          ///< speed that a disk is trusted not to exceed, in thermal speeds sqrt(T/m)
 };
 

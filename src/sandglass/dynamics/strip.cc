@@ -22,7 +22,7 @@ Strip::Strip(Tables& tables)
       cold_(tables.cold.begin()),
       box_(tables.box),
       law_(tables.state.collision),
-      leash_(tables.leash),
+      leash_{tables.leash[false], tables.leash[true]},
       neighbours_(tables.neighbours) {
   for (const int a : {small, big})
     for (const int b : {small, big}) masses_[a][b] = tables.masses[a][b];
@@ -336,7 +336,7 @@ bool Strip::remake_list(std::uint32_t i, double t) {
   if (!whole_ && !core_.hold(neighbours_.grid().row_of(centre))) return false;
   if (!neighbours_.renew(i, cold_[i].centre, centre, records_, !whole_)) return false;
   ++bookkeeping_.list_rebuilds;
-  cold_[i].centre = centre;
+  set_centre(i, centre);
   if (!whole_) concern_if_beside_frozen(i);
   return true;
 }

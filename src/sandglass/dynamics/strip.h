@@ -42,6 +42,11 @@ class alignas(128) Strip {
   /// Enters a disk that has no list. Returns its slot's neighbours by neighbours().list().
   void enter_list(std::uint32_t slot) { neighbours_.enter(slot, cold_[slot].centre, records_); }
   [[nodiscard]] Neighbours& neighbours() { return neighbours_; }
+  /// Where a disk's list is to be made.
+  void set_centre(std::uint32_t i, FixedPoint centre) {
+    cold_[i].centre = centre;
+    cold_[i].roomy = tables_->zone(neighbours_.grid().row_of(centre)) == Tables::Zone::roomy;
+  }
   void set_calendar(Calendar calendar) { calendar_ = std::move(calendar); }
   void enter_calendar(std::uint32_t i);
   void predict(std::uint32_t i);
@@ -69,6 +74,7 @@ class alignas(128) Strip {
   void remake_calendar();
   [[nodiscard]] bool failed() const { return failed_; }
   [[nodiscard]] bool too_fast() const { return too_fast_; }
+  [[nodiscard]] bool too_deep() const { return too_deep_; }
 
   /// Adds what was counted to `tally` and `bookkeeping`, and begins anew.
   void hand_in(Tally& tally, Simulation::Bookkeeping& bookkeeping);
@@ -192,7 +198,7 @@ class alignas(128) Strip {
   Box box_{1, {}};
   PairMasses masses_[species_count][species_count];
   CollisionLaw law_;
-  double leash_ = 0;
+  double leash_[2] = {0, 0};
   Neighbours neighbours_;
   Calendar calendar_;
   double end_ = 0;              // of the present run
@@ -214,6 +220,7 @@ class alignas(128) Strip {
   bool frozen_about_ = false;              // in a later pass: some are frozen that may be met
   bool failed_ = false;                    // the window must be undone
   bool too_fast_ = false;                  // because a disk was faster than trusted
+  bool too_deep_ = false;                  // because one would be frozen farther from the lanes than expected
   GrowingArray<FrozenKick> frozen_kicks_;  // a heap
   GrowingArray<std::uint32_t> suspects_;   // may be nearest to a frozen disk that kicks
   GrowingArray<Left> left_;                // frozen in this pass

@@ -32,7 +32,16 @@ struct Tables {
   Array<Record> records;  ///< one more than there are disks: it fills up lists
   Array<ColdRecord> cold;
   NeighbourTable neighbours;
-  double leash = 0;  ///< how far a disk may move from the centre of its list
+  /// How far a disk may move from the centre of its list: shorter where frozen disks may come, and by half of their
+  /// way; longer (roomy) elsewhere.
+  double leash[2] = {0, 0};
+
+  /// Where several threads work, by the row of the list centre: disks that stand in a lane or so near one that they are
+  /// on the short leash and may be frozen; those beyond, as far as these reach, are on the short leash; all others are
+  /// on the long one. Without threads there are no rows: all are.
+  enum class Zone : std::uint8_t { near_lane, beside, roomy };
+  Array<Zone> zones;
+  [[nodiscard]] Zone zone(std::uint32_t row) const { return zones.size() == 0 ? Zone::roomy : zones[row]; }
   Window window;
 };
 

@@ -7,6 +7,7 @@
 //  Last pass: one thread does the rest, most often nothing.
 // A strip sees and changes what its disks have in their lists and, in the second pass, the partners of those: lanes are
 // two such ranges wide, four in the second pass, so that no two threads meet.
+#include <algorithm>
 #include <cmath>
 
 #include "sandglass/dynamics/epoch.h"
@@ -40,10 +41,11 @@ std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) {
   std::uint32_t strips = grid.side() / (worth > possible ? worth : possible);
   if (strips > crew->size()) strips = crew->size();
   if (strips < 2) return 1;
-  // The longer a window, the fewer disks are frozen at its start, and the more lists expire, as (1 - window_part)^-2.
+  // The longer a window, the fewer disks are frozen at its start, and the more lists expire near the lanes, as (1 -
+  // window_part)^-2.
   const double in_lanes = static_cast<double>(strips * lane_) / grid.side();
   window_part_ =
-      tuning_.window_part > 0 ? tuning_.window_part : std::fmax(0.05, std::fmin(1.5 * std::sqrt(in_lanes), 0.3));
+      tuning_.window_part > 0 ? tuning_.window_part : std::fmax(0.05, std::fmin(2.5 * std::sqrt(in_lanes), 0.4));
   if (tuning_.strip_rows > 0) return strips;
   // Per disk and window: about one and a half times the disks of the lanes are frozen, and half the mean free times in
   // a window are collisions, which take about as long.
@@ -74,6 +76,39 @@ std::uint32_t IsaEngine::lane_rows(const Neighbours& neighbours) const {
   return 2 * half > apart ? 2 * half : apart;
 }
 
+/// Where disks are on which leash. A frozen disk and another that is not in its list do not touch if both are on the
+/// short one: the others within that range of where disks are frozen must be on it, too.
+void IsaEngine::make_zones(const Neighbours& neighbours) {
+  tables_.zones = {};
+  if (strips_ == 1) return;
+  const Grid& grid = neighbours.grid();
+  if (freezing_depth_ == 0) freezing_depth_ = tuning_.freezing_depth;
+  if (freezing_depth_ == 0) {
+    // Freezing goes on from disk to disk, the sooner the less room there is between them. Ten or more in a row are
+    // rare.
+    const double contact = state_.mixture.radius[small] + state_.mixture.radius[big];
+    const double spacing = tables_.box.length * std::sqrt(1.15 / static_cast<double>(tables_.size));
+    const double room = std::fmax(spacing - contact, 0.05 * contact);
+    freezing_depth_ = 10 * contact * std::fmax(1, way() / room);
+  }
+  const std::uint32_t side = grid.side(), depth = grid.rows_within(freezing_depth_);
+  const std::uint32_t reach = grid.rows_within(neighbours.longest_range() + way());
+  tables_.zones = Array<Tables::Zone>(side);
+  for (Tables::Zone& zone : tables_.zones) zone = Tables::Zone::roomy;
+  auto mark = [&](std::uint32_t rows_beyond, Tables::Zone zone) {
+    for (std::uint32_t s = 0; s < strips_; ++s)
+      for (std::uint32_t n = 0; n < std::min(lane_ + 2 * rows_beyond, side); ++n)
+        tables_.zones[(border(s) + 2 * side - lane_ / 2 - std::min(rows_beyond, side) + n) % side] = zone;
+  };
+  mark(depth + reach, Tables::Zone::beside);
+  mark(depth, Tables::Zone::near_lane);
+}
+
+/// The row amidst the lane below strip s.
+std::uint32_t IsaEngine::border(std::uint32_t s) const {
+  return static_cast<std::uint32_t>(std::uint64_t{s} * tables_.neighbours.grid.side / strips_);
+}
+
 /// Gives the disks to strips, according to what is foreseen for them now.
 void IsaEngine::divide() {
   const std::uint32_t side = whole_.neighbours().grid().side(), n = strips_;
@@ -84,11 +119,10 @@ void IsaEngine::divide() {
   first_ = std::make_unique<Strip[]>(n);
   shifted_ = std::make_unique<Strip[]>(n);
   lanes_ = std::make_unique<Rows[]>(n);
-  auto border = [&](std::uint32_t s) { return static_cast<std::uint32_t>(std::uint64_t{s} * side / n); };
   auto middle = [&](std::uint32_t s) { return (border(s) + border(s + 1)) / 2; };
   const std::size_t between = tables_.size * 2 * lane / side;  // about as many disks are frozen around a lane
   // A disk that goes from one strip to the next has been frozen in every window on its way through the lane.
-  const double windows = (whole_.neighbours().grid().height(lane) - 2 * tables_.leash) / way();
+  const double windows = (whole_.neighbours().grid().height(lane) - 2 * tables_.leash[true]) / way();
   windows_between_copies_ = windows < 24 ? windows > 1 ? static_cast<unsigned>(windows) : 1 : 24;
   look_for_top_speed();
   const double window = window_length(), lead = mean_lead();
@@ -217,9 +251,13 @@ void IsaEngine::keep() {
 /// logged.
 void IsaEngine::undo(double start, double end) {
   ++bookkeeping.windows_undone;
-  bool too_fast = whole_.too_fast();
-  for (std::uint32_t s = 0; s < strips_; ++s) too_fast = too_fast || first_[s].too_fast() || shifted_[s].too_fast();
+  bool too_fast = whole_.too_fast(), too_deep = false;
+  for (std::uint32_t s = 0; s < strips_; ++s) {
+    too_fast = too_fast || first_[s].too_fast() || shifted_[s].too_fast();
+    too_deep = too_deep || first_[s].too_deep() || shifted_[s].too_deep();
+  }
   if (too_fast) caution_ *= 1.1;
+  if (too_deep) freezing_depth_ *= 1.25;
   hand_in();
   drop_strip_logs();
   for (std::size_t i = 0; i < tables_.size; ++i) {

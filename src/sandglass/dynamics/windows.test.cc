@@ -27,13 +27,15 @@ RandomSystem any_system() {
   return system;
 }
 
-/// Strips and windows so small that most disks are frozen, some again and again; or a speed that disks often exceed.
+/// Strips and windows so small that most disks are frozen, some again and again; or a speed that disks often exceed, or
+/// a depth beyond which they are often frozen.
 Tuning any_tuning() {
   return {.skin = *rc::gen::element(0.05, 0.3, 1.0, 2.0),
           .cell_size = *rc::gen::element(0.0, 1.0, 1.5, 4.0),
           .threads = static_cast<unsigned>(*rc::gen::element(2, 3, 4)),
           .strip_rows = 1,
           .window_part = *rc::gen::element(0.0, 0.1, 0.5, 0.9),
+          .freezing_depth = *rc::gen::element(0.0, 0.0, 1.0, 5.0),
           .top_speed = *rc::gen::element(0.0, 3.0, 5.0, 10.0)};
 }
 
