@@ -19,9 +19,12 @@ struct Corner {
   std::uint32_t neighbour;
 };
 
-// Keeps the part of `cell` with n.p <= h, n the unit vector (nx, ny); the new side belongs to `neighbour`.
-void clip(std::vector<Corner>& cell, std::vector<Corner>& scratch, double nx, double ny, double h,
+// Keeps the part of `cell` with n.p <= h, n the unit vector (nx, ny); the new side belongs to `neighbour`. Returns
+// whether anything was cut off.
+bool clip(std::vector<Corner>& cell, std::vector<Corner>& scratch, double nx, double ny, double h,
           std::uint32_t neighbour) {
+  if (std::none_of(cell.begin(), cell.end(), [&](const Corner& c) { return nx * c.x + ny * c.y - h > 0; }))
+    return false;
   scratch.clear();
   for (std::size_t k = 0; k < cell.size(); ++k) {
     const Corner& a = cell[k];
@@ -34,6 +37,7 @@ void clip(std::vector<Corner>& cell, std::vector<Corner>& scratch, double nx, do
     scratch.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), leaving ? neighbour : a.neighbour});
   }
   cell.swap(scratch);
+  return true;
 }
 
 // Signed distance from disk i to the side shared with a disk at distance d: |p|^2 - R_i^2 = |p - d|^2 - R_j^2.
@@ -76,6 +80,8 @@ std::vector<std::complex<double>> bond_order(const Frame& frame, const Populatio
   const double half = population.box_length / 2;
   const double spacing = population.box_length / std::sqrt(static_cast<double>(frame.size()));
   const Cells cells(frame.x, frame.y, population.box_length, 1.5 * spacing);
+  const double usual = 1.75 * spacing;  // within it are nearly always all that touch the cell
+  const auto nearer = [](const auto& a, const auto& b) { return a.squared() < b.squared(); };
 
   std::vector<std::complex<double>> psi(frame.size());
   std::vector<Cells::Neighbour> near;
@@ -84,18 +90,27 @@ std::vector<std::complex<double>> bond_order(const Frame& frame, const Populatio
     // Wider and wider, until no disk farther away can cut the cell.
     for (int rings = 1;; ++rings) {
       const double complete = cells.collect(id, rings, near);
-      std::sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.squared() < b.squared(); });
+      // By distance; the farther part is put in order only if it is needed.
+      const auto farther =
+          std::partition(near.begin(), near.end(), [&](const auto& n) { return n.squared() < usual * usual; });
+      const auto usual_count = static_cast<std::size_t>(farther - near.begin());
+      std::sort(near.begin(), farther, nearer);
       cell = {{-half, -half, no_neighbour},
               {half, -half, no_neighbour},
               {half, half, no_neighbour},
               {-half, half, no_neighbour}};
+      double farthest = farthest_corner(cell);
       for (std::uint32_t k = 0; k < near.size(); ++k) {
+        if (k == usual_count) {
+          if (side_distance(usual, radius[id], largest) > farthest) break;
+          std::sort(farther, near.end(), nearer);
+        }
         const double d = std::sqrt(near[k].squared());
-        if (side_distance(d, radius[id], largest) > farthest_corner(cell)) break;
+        if (side_distance(d, radius[id], largest) > farthest) break;
         const double h = side_distance(d, radius[id], radius[near[k].id]);
-        clip(cell, scratch, near[k].dx / d, near[k].dy / d, h, k);
+        if (clip(cell, scratch, near[k].dx / d, near[k].dy / d, h, k)) farthest = farthest_corner(cell);
       }
-      if (std::isinf(complete) || side_distance(complete, radius[id], largest) > farthest_corner(cell)) break;
+      if (std::isinf(complete) || side_distance(complete, radius[id], largest) > farthest) break;
     }
     psi[id] = weighted_order(cell, near);
   }

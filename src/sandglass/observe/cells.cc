@@ -35,11 +35,13 @@ int Cells::cell(double coordinate) const {
 }
 
 void Cells::append(std::uint32_t id, std::size_t first, std::size_t last, std::vector<Neighbour>& found) const {
-  auto nearest = [&](double d) { return d - box_length_ * std::nearbyint(d / box_length_); };
-  for (std::size_t k = first; k < last; ++k) {
-    const std::uint32_t other = sorted_[k];
-    if (other != id) found.push_back({other, nearest(x_[other] - x_[id]), nearest(y_[other] - y_[id])});
-  }
+  const double half = box_length_ / 2;
+  auto nearest = [&](double d) {  // most are within half the box, which spares the division
+    return std::fabs(d) <= half ? d : d - box_length_ * std::nearbyint(d / box_length_);
+  };
+  const double x = x_[id], y = y_[id];
+  for (std::size_t k = first; k < last; ++k)
+    if (sorted_[k] != id) found.push_back({sorted_[k], nearest(sorted_x_[k] - x), nearest(sorted_y_[k] - y)});
 }
 
 double Cells::collect(std::uint32_t id, int rings, std::vector<Neighbour>& found) const {

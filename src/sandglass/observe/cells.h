@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -44,11 +45,23 @@ class Cells {
 template <class Visit>
 void Cells::for_each_pair(double range, Visit&& visit) const {
   const double squared_range = range * range;
+  // Who is in range cannot be foretold: gathered first, without a branch, then visited.
+  struct Near {
+    std::uint32_t id;
+    double dx, dy, squared;
+  };
+  std::array<Near, 64> near;
   const auto between = [&](std::size_t a, std::size_t begin, std::size_t end, double shift_x, double shift_y) {
     const double x = sorted_x_[a] - shift_x, y = sorted_y_[a] - shift_y;
-    for (std::size_t b = begin; b < end; ++b) {
-      const double dx = sorted_x_[b] - x, dy = sorted_y_[b] - y, squared = dx * dx + dy * dy;
-      if (squared < squared_range) visit(sorted_[a], sorted_[b], dx, dy, squared);
+    while (begin < end) {
+      const std::size_t stop = std::min(end, begin + near.size());
+      std::size_t count = 0;
+      for (; begin < stop; ++begin) {
+        const double dx = sorted_x_[begin] - x, dy = sorted_y_[begin] - y, squared = dx * dx + dy * dy;
+        near[count] = {sorted_[begin], dx, dy, squared};
+        count += squared < squared_range ? 1 : 0;
+      }
+      for (std::size_t k = 0; k < count; ++k) visit(sorted_[a], near[k].id, near[k].dx, near[k].dy, near[k].squared);
     }
   };
   const int rings = static_cast<int>(std::ceil(range * per_side_ / box_length_));
@@ -62,20 +75,26 @@ void Cells::for_each_pair(double range, Visit&& visit) const {
     }
     return;
   }
-  // Half of the cells around each: those to the right in its row and all of the rows above.
+  // Half of the cells around each: those to the right in its row and all of the rows above. Those of a row lie side by
+  // side in memory, in two stretches where they reach around the box.
   for (int row = 0; row < per_side_; ++row) {
     for (int column = 0; column < per_side_; ++column) {
       const auto own = static_cast<std::size_t>(row * per_side_ + column);
-      for (std::size_t a = first_[own]; a < first_[own + 1]; ++a) between(a, a + 1, first_[own + 1], 0, 0);
-      for (int dy = 0; dy <= rings; ++dy) {
-        for (int dx = dy == 0 ? 1 : -rings; dx <= rings; ++dx) {
-          const int r = row + dy, c = column + dx;
-          const int wrapped_r = r % per_side_, wrapped_c = (c + per_side_) % per_side_;
-          const auto other = static_cast<std::size_t>(wrapped_r * per_side_ + wrapped_c);
-          const double shift_x = (c - wrapped_c) / per_side_ * box_length_;
-          const double shift_y = (r - wrapped_r) / per_side_ * box_length_;
-          for (std::size_t a = first_[own]; a < first_[own + 1]; ++a)
-            between(a, first_[other], first_[other + 1], shift_x, shift_y);
+      for (std::size_t a = first_[own]; a < first_[own + 1]; ++a) {
+        between(a, a + 1, first_[own + 1], 0, 0);
+        for (int dy = 0; dy <= rings; ++dy) {
+          const int around_y = (row + dy) / per_side_;
+          const int base = (row + dy - around_y * per_side_) * per_side_;
+          // The columns from `begin` to `end` once around the box by `around_x`.
+          const auto stretch = [&](int begin, int end, int around_x) {
+            if (begin < end)
+              between(a, first_[static_cast<std::size_t>(base + begin)], first_[static_cast<std::size_t>(base + end)],
+                      around_x * box_length_, around_y * box_length_);
+          };
+          const int begin = dy == 0 ? column + 1 : column - rings, end = column + rings + 1;
+          stretch(begin + per_side_, per_side_, -1);
+          stretch(std::max(begin, 0), std::min(end, per_side_), 0);
+          stretch(std::max(begin - per_side_, 0), end - per_side_, 1);
         }
       }
     }

@@ -1,5 +1,6 @@
 #include "sandglass/observe/correlator.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -93,16 +94,20 @@ void Correlator::evaluate(std::size_t level, std::size_t lag) {
     const Range range = population_.range(species);
     DisplacementSums displacements;
     displacements.by_distance = histogram(lag, species);
-    add_displacements(origin, now_, range, scale, plan_.overlap_length, displacements);
+    // Block by block, as the sums are made anyway, so that what is read several times is still in the nearest cache.
+    for (Range block{range.begin, range.begin}; block.begin < range.end; block.begin = block.end) {
+      block.end = std::min(block.begin + block_size, range.end);
+      add_displacements(origin, now_, block, scale, plan_.overlap_length, displacements);
+      add_velocity_products(origin, now_, block, sum(velocity, species));
+      add_velocity_displacements(origin, now_, block, scale, sum(velocity_displacement, species));
+      for (std::size_t k = 0; k < shells_.size(); ++k)
+        add_scattering(origin, now_, block, shells_[k], population_.box_length, sum(scattering + k, species));
+    }
     sum(square, species).add(displacements.square);
     sum(fourth, species).add(displacements.fourth);
     overlaps[species] = static_cast<double>(displacements.overlapping);
     sum(overlapping, species).add(overlaps[species]);
     sum(overlap_square, species).add(overlaps[species] * overlaps[species]);
-    add_velocity_products(origin, now_, range, sum(velocity, species));
-    add_velocity_displacements(origin, now_, range, scale, sum(velocity_displacement, species));
-    for (std::size_t k = 0; k < shells_.size(); ++k)
-      add_scattering(origin, now_, range, shells_[k], population_.box_length, sum(scattering + k, species));
   }
   sum(overlap_product, small).add(overlaps[small] * overlaps[big]);
   if (lag > 0 && schedule_.due[due_].offset == schedule_.lags[lag]) evaluate_first(origin, lag);

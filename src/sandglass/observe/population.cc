@@ -54,6 +54,10 @@ void take_component(const std::vector<double>& by_id, const Population& populati
 void take_snapshot(const Frame& frame, const Population& population, Snapshot& snapshot) {
   take_component(frame.x, population, snapshot.x);
   take_component(frame.y, population, snapshot.y);
+  take_velocities(frame, population, snapshot);
+}
+
+void take_velocities(const Frame& frame, const Population& population, Snapshot& snapshot) {
   take_component(frame.vx, population, snapshot.vx);
   take_component(frame.vy, population, snapshot.vy);
 }

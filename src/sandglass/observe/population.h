@@ -50,6 +50,8 @@ struct Snapshot {
 /// Sorts `frame` and subtracts the mass-weighted mean position and velocity (single kicks move the centre of mass). The
 /// means are summed in the order of the population: same bits always.
 void take_snapshot(const Frame& frame, const Population& population, Snapshot& snapshot);
+/// The same of the velocities alone.
+void take_velocities(const Frame& frame, const Population& population, Snapshot& snapshot);
 
 /// Sums over disks are made block by block: within a block in a fixed order in doubles, across blocks exactly.
 inline constexpr std::size_t block_size = 512;

@@ -26,11 +26,14 @@ double kernel(double x) {
 double kernel_transform(double frequency) {
   constexpr int steps = 1024;
   constexpr double h = static_cast<double>(kernel_width) / steps;
+  const auto place = [](int i) { return h * i - kernel_width / 2.0; };
+  static const std::vector<double> kernels = [&] {
+    std::vector<double> values(steps);
+    for (int i = 1; i < steps; ++i) values[static_cast<std::size_t>(i)] = kernel(place(i));
+    return values;
+  }();
   double sum = 0;
-  for (int i = 1; i < steps; ++i) {
-    const double x = h * i - kernel_width / 2.0;
-    sum += kernel(x) * cosine_of_turns(frequency * x);
-  }
+  for (int i = 1; i < steps; ++i) sum += kernels[static_cast<std::size_t>(i)] * cosine_of_turns(frequency * place(i));
   return sum * h;
 }
 
@@ -104,7 +107,7 @@ DensityModes density_modes(const Frame& frame, const Population& population, dou
   const std::size_t grid = std::bit_ceil(std::max<std::size_t>(4 * m_max, 2 * kernel_width));
 
   std::vector<double> re(grid * grid), im(grid * grid);
-  const TabulatedKernel tabulated;
+  static const TabulatedKernel tabulated;
   spread(frame, population, small, stride / population.box_length, tabulated, grid, re);
   spread(frame, population, big, stride / population.box_length, tabulated, grid, im);
   transform_columns(re, im, grid, grid);
@@ -120,10 +123,10 @@ DensityModes density_modes(const Frame& frame, const Population& population, dou
   turn(re), turn(im);
   transform_columns(re, im, grid, width);
 
-  std::vector<double> correction(width);
-  for (std::size_t n = 0; n < width; ++n)
-    correction[n] =
-        1 / kernel_transform((static_cast<double>(n) - static_cast<double>(m_max)) / static_cast<double>(grid));
+  std::vector<double> correction(width);  // even in the frequency, to the bit
+  for (std::size_t n = 0; n <= m_max; ++n)
+    correction[m_max - n] = correction[m_max + n] =
+        1 / kernel_transform(static_cast<double>(n) / static_cast<double>(grid));
   for (std::size_t m = 0; m <= m_max; ++m) {
     for (std::size_t n = 0; n < width; ++n) {
       const std::size_t k = m * width + n, opposite = (grid - m) % grid * width + (width - 1 - n);

@@ -25,7 +25,7 @@ double Timeseries::next_sample() const {
 
 void Timeseries::sample(const Frame& frame) {
   if (next_ == times_.size()) return;
-  take_snapshot(frame, population_, now_);
+  take_velocities(frame, population_, now_);
   const Temperatures t = temperatures(now_, population_);
   collisions_[next_] = frame.collisions_per_disk;
   all_[next_] = t.all;
@@ -96,7 +96,7 @@ void IntervalAverages::sample(const Frame& frame) {
   }
   const std::uint64_t part = taken_ * parts_ / plan_.temperature_samples;
   if (taken_ == first_sample(part)) boundaries_[interval_ * (parts_ + 1) + part] = frame.collisions_per_disk;
-  take_snapshot(frame, population_, now_);
+  take_velocities(frame, population_, now_);
   const Temperatures t = temperatures(now_, population_);
   ExactSum* sums = &sums_[(interval_ * parts_ + part) * groups.size()];
   sums[static_cast<std::size_t>(Group::all)].add(t.all);
