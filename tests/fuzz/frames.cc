@@ -1,4 +1,5 @@
-// Frames of other programs, extended XYZ or LAMMPS dumps, told apart by how they begin, as `sandglass analyze` reads them.
+// Frames of other programs, extended XYZ or LAMMPS dumps, told apart by how they begin, as `sandglass analyze` reads
+// them.
 #include "sandglass/io/frames.h"
 
 #include <cmath>
