@@ -9,8 +9,8 @@ over the intervals of each run, or, where it is larger, the scatter of independe
 
     PYTHONPATH=python python3 docs/reproduction/exponents.py --by-interval campaigns/young > young.csv
 
-One line a state point and interval, with its mean temperature: how the exponents change with waiting time. Errors: the
-scatter of independent starts.
+One line a state point and interval, then every two intervals, then all, with the mean temperature: how the exponents
+change with waiting time. Errors: the scatter of independent starts.
 """
 import csv
 import sys
@@ -100,27 +100,31 @@ def over_all(folder):
     return [COLUMNS + [column for name in found[0] for column in (name, "error")], *rows]
 
 
+def stretch(run, first, last):
+    """Temperature and exponents of the intervals `first` to `last` - 1 of one run."""
+    msd, cage = (run[f"dynamics/small/{name}"] for name in ("mean_square_displacement", "cage_relative_displacement"))
+    of = lambda curve, low, high: exponent(curve["time"], curve["interval_value"][first:last].mean(axis=0), low, high)
+    slower = MISTAKEN_TEMPERATURE ** 0.5
+    return [run["timeseries/intervals/temperature_all"][first:last].mean(), of(msd, 1, 10), of(cage, 1, 10),
+            of(msd, slower, 10 * slower)]
+
+
 def by_interval(folder):
-    """Rows of a table: the exponents of each interval of each state point."""
-    rows = []
+    """Rows of a table: the exponents of each interval of each state point, of every two, and of all."""
+    names = ["temperature", "1-10", "cage 1-10", "T = 0.73"]
+    rows = [["N", "eps", "starts", "from", "to"] + [column for name in names for column in (name, "error")]]
     for key, runs in runs_by_point(folder):
         count = runs[0].config["run"]["intervals"]
-        for i in range(count):
-            ends = [np.mean([waited(run) + run.summary["time"] * part / count for run in runs]) for part in (i, i + 1)]
-            row = [*key[:2], len(runs), *(f"{end:.1f}" for end in ends)]
-            columns = []
-            for run in runs:
-                msd, cage = (run[f"dynamics/small/{name}"] for name in ("mean_square_displacement", "cage_relative_displacement"))
-                slower = MISTAKEN_TEMPERATURE ** 0.5
-                columns.append([run["timeseries/intervals/temperature_all"][i],
-                                exponent(msd["time"], msd["interval_value"][i], 1, 10),
-                                exponent(cage["time"], cage["interval_value"][i], 1, 10),
-                                exponent(msd["time"], msd["interval_value"][i], slower, 10 * slower)])
-            for values in np.transpose(columns):
-                row += [f"{values.mean():.4f}", f"{values.std(ddof=1) / np.sqrt(len(values)):.4f}" if len(values) > 1 else "nan"]
-            rows.append(row)
-    names = ["temperature", "1-10", "cage 1-10", "T = 0.73"]
-    return [["N", "eps", "starts", "from", "to"] + [column for name in names for column in (name, "error")], *rows]
+        for length in (1, 2, count):
+            for first in range(0, count, length):
+                ends = [np.mean([waited(run) + run.summary["time"] * i / count for run in runs])
+                        for i in (first, first + length)]
+                row = [*key[:2], len(runs), *(f"{end:.1f}" for end in ends)]
+                for values in np.transpose([stretch(run, first, first + length) for run in runs]):
+                    error = values.std(ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.nan
+                    row += [f"{values.mean():.4f}", f"{error:.4f}"]
+                rows.append(row)
+    return rows
 
 
 if __name__ == "__main__":
