@@ -237,14 +237,26 @@ def draw_inset(axes, inset, family_of):
     if crowded[corner] > 0:
         make_room(axes, 0.42 + legend)
         corner = (1 - room[0], 1 - room[1])
-    left = corner[0] + room[0] - size[0] - (0.035 if corner[0] > 0 else 0)  # the ticks of the main axes are on the left
-    small = axes.inset_axes([left, corner[1] + room[1] - size[1] - 0.03 - legend, *size])
-    small.tick_params(labelsize=5.5, pad=1.5, length=2, which="major")
-    small.tick_params(length=1, which="minor")
-    set_scales(small, inset)
+    right = corner[0] + room[0] - (0.035 if corner[0] > 0 else 0.015)  # clear of the ticks, or of the curves
+    left = right - size[0]
+    place = [left, corner[1] + room[1] - size[1] - 0.03 - legend, *size]
     levels = levels_of(inset)
     if family_of and set(levels) <= set(family_of):
         levels = family_of  # the colours of the main figure
+    small = draw_inset_at(axes, inset, levels, place, named)
+    outer = small.get_tightbbox(axes.figure.canvas.get_renderer()).transformed(axes.transAxes.inverted())
+    overlap = 0.035 - outer.x0  # with the ticks of the main axes on the left
+    if overlap > 0:  # wide tick labels: a narrower inset, for to the right of it there are curves
+        small.remove()
+        draw_inset_at(axes, inset, levels, [left + overlap, place[1], size[0] - overlap, size[1]], named)
+
+
+def draw_inset_at(axes, inset, levels, place, named):
+    """The inset in `place` (left, bottom, width, height in fractions of the axes), with a legend for the curves `named`."""
+    small = axes.inset_axes(place)
+    small.tick_params(labelsize=5.5, pad=1.5, length=2, which="major")
+    small.tick_params(length=1, which="minor")
+    set_scales(small, inset)
     draw_curves(small, inset, levels, small=True)
     set_ticks(small, inset, True)
     small.set_xlabel(axis_text(inset["x"]), fontsize=6, labelpad=1)
@@ -252,6 +264,8 @@ def draw_inset(axes, inset, family_of):
     if named:
         small.legend(fontsize=5, loc="lower center", bbox_to_anchor=(0.5, 0.98), ncol=len(named), handlelength=1,
                      borderaxespad=0.1, columnspacing=0.8, handletextpad=0.4)
+    axes.figure.canvas.draw()
+    return small
 
 
 def shared_levels(figure, panel):

@@ -1,13 +1,8 @@
 #include "hdf5_mutator.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <array>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <random>
 #include <vector>
@@ -20,27 +15,6 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 namespace sandglass {
 
 using hdf5::Handle;
-
-MemoryFile::MemoryFile() {
-  static int files = 0;
-  const std::filesystem::path shared = "/dev/shm";
-  path_ = (std::filesystem::is_directory(shared) ? shared : std::filesystem::temp_directory_path()) /
-          fmt::format("sandglass-fuzz-{}-{}.h5", getpid(), ++files);
-}
-
-MemoryFile::~MemoryFile() {
-  std::error_code error;
-  std::filesystem::remove(path_, error);
-}
-
-void MemoryFile::fill(const std::uint8_t* data, std::size_t size) {
-  std::ofstream(path_, std::ios::binary) << text_of(data, size);
-}
-
-std::string MemoryFile::contents() const {
-  std::ifstream file(path_, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 namespace {
 

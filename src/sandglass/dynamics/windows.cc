@@ -84,12 +84,13 @@ void IsaEngine::make_zones(const Neighbours& neighbours) {
   const Grid& grid = neighbours.grid();
   if (freezing_depth_ == 0) freezing_depth_ = tuning_.freezing_depth;
   if (freezing_depth_ == 0) {
-    // Freezing goes on from disk to disk, the sooner the less room there is between them. Ten or more in a row are
-    // rare.
+    // Freezing goes on from disk to disk, the sooner the less room there is between them: in some five of them during a
+    // window, and farther in the farthest of many places.
     const double contact = state_.mixture.radius[small] + state_.mixture.radius[big];
     const double spacing = tables_.box.length * std::sqrt(1.15 / static_cast<double>(tables_.size));
     const double room = std::fmax(spacing - contact, 0.05 * contact);
-    freezing_depth_ = 10 * contact * std::fmax(1, way() / room);
+    const double farthest = 4 + std::log(static_cast<double>(tables_.size));
+    freezing_depth_ = farthest * contact * std::fmax(1, way() / room);
   }
   const std::uint32_t side = grid.side(), depth = grid.rows_within(freezing_depth_);
   const std::uint32_t reach = grid.rows_within(neighbours.longest_range() + way());

@@ -55,6 +55,7 @@ void FrameReader::identify(const RawFrame& first) {
   disks_.disks.resize(n);
   set_species(first);
   disks_.box_length = first.box_length / length_unit_;
+  if (!std::isfinite(disks_.box_length)) refuse("the box is too large to be counted in radii of its smallest disk");
   has_velocities_ = !first.vx.empty();
   if (!has_velocities_)
     decisions_.emplace_back(
@@ -118,6 +119,8 @@ void FrameReader::set_species(const RawFrame& first) {
   const double mass_unit = class_mass[small];
   disks_.mixture.radius = {1, big_radius / small_radius};
   disks_.mixture.mass = {1, class_mass[big] > 0 ? class_mass[big] / mass_unit : 1};
+  if (!std::isfinite(disks_.mixture.radius[big]) || !std::isfinite(disks_.mixture.mass[big]))
+    refuse("radii or masses of the two species differ by more than a number can say");
 }
 
 bool FrameReader::next(Frame& frame) {
@@ -147,6 +150,8 @@ bool FrameReader::next(Frame& frame) {
     frame.x[i] = last_x_[i], frame.y[i] = last_y_[i];
     frame.vx[i] = has_velocities_ ? raw_.vx[places_[i]] / length_unit_ : 0;
     frame.vy[i] = has_velocities_ ? raw_.vy[places_[i]] / length_unit_ : 0;
+    if (!std::isfinite(frame.vx[i]) || !std::isfinite(frame.vy[i]))
+      refuse(fmt::format("a velocity of frame {} is too large to be counted in radii of the smallest disk", frames_));
   }
   ++frames_;
   return true;

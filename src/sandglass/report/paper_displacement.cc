@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sandglass/report/correlation.h"
 #include "sandglass/report/number.h"
@@ -44,10 +45,13 @@ Check cages(const Family& family) {
   }
   if (caged.empty() && free.empty() && unclear.empty()) return check;
   check.outcome = !free.empty() ? Outcome::differs : caged.empty() ? Outcome::not_enough_data : Outcome::agrees;
-  check.finding = (free.empty() ? "" : "No cage:" + free) + (unclear.empty() ? "" : " not clear:" + unclear) +
-                  (caged.empty() ? "" : " a cage, with smallest exponent:" + caged);
-  check.finding.erase(0, check.finding.find_first_not_of(' '));
-  check.finding.back() = '.';
+  check.finding.clear();
+  for (const auto& [words, points] :
+       {std::pair{"No cage:", &free}, {"Not clear:", &unclear}, {"A cage, with smallest exponent:", &caged}}) {
+    if (points->empty()) continue;
+    points->back() = '.';
+    check.finding += (check.finding.empty() ? "" : " ") + (words + *points);
+  }
   return check;
 }
 

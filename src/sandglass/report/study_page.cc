@@ -66,8 +66,8 @@ std::vector<std::string> summary_of(const Study& study, const std::vector<Figure
                     "age of the system.",
                     counted(unsteady, "run")));
   if (!study.absent.empty())
-    text.push_back(fmt::format("Without data: {} that are there, or expected, listed at the end.",
-                               counted(study.absent.size(), "run")));
+    text.push_back(
+        fmt::format("Without data: {} found or expected, listed at the end.", counted(study.absent.size(), "run")));
   return text;
 }
 
