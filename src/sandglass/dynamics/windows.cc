@@ -288,11 +288,11 @@ void IsaEngine::hand_in() {
   }
 }
 
-/// Sees to it that every strip has room for the cells that will be overfull.
+/// Sees to it that every strip has room for the cells that will be overfull: without, it would have to freeze disks.
 void IsaEngine::replenish() {
-  auto see_to = [](Neighbours& neighbours) {
-    Grid& grid = neighbours.grid();
-    if (grid.spare_lines() < 16) grid.take_lines(64 + grid.side() / 8);
+  const auto room = static_cast<std::uint32_t>(64 + tables_.size / strips_ / 256);
+  auto see_to = [room](Neighbours& neighbours) {
+    if (neighbours.grid().spare_lines() < room) neighbours.grid().take_lines(4 * room);
   };
   for (std::uint32_t s = 0; s < strips_; ++s) see_to(first_[s].neighbours()), see_to(shifted_[s].neighbours());
 }
