@@ -40,7 +40,7 @@ class IsaEngine final : public Engine {
   [[nodiscard]] std::uint32_t border(std::uint32_t s) const;
   void make_zones(const Neighbours& neighbours);
   void divide();
-  void look_for_top_speed();
+  void survey();
   void keep();
   [[nodiscard]] double way() const { return window_part_ * tables_.neighbours.skin; }
   [[nodiscard]] double window_length() const;
@@ -64,6 +64,7 @@ class IsaEngine final : public Engine {
   std::uint32_t lane_ = 0;            // rows of each of these
   double window_part_ = 0;            // how far the fastest disk may fly in a window, in skins
   double top_speed_[species_count] = {0, 0};
+  std::uint32_t longest_list_ = 0;
   double caution_ = 1;          // grows with every window that had to be undone since a disk was too fast
   double freezing_depth_ = 0;   // how far from the lanes disks are frozen; grows where that is not enough
   Array<Record> kept_records_;  // the disks some windows ago

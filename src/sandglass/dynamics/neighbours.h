@@ -131,6 +131,12 @@ class Neighbours {
     return true;
   }
 
+  /// Sees to it that a list may have so many entries. Other Neighbours must be told (refresh).
+  void make_room(std::uint32_t entries) {
+    refresh();
+    while (entries > stride_) widen();
+  }
+
   /// Brings what renew will read nearer to the processor.
   [[gnu::always_inline]] void fetch(FixedPoint at, const Record& disk) const {
     grid_.fetch(at, range(disk.radius, big));

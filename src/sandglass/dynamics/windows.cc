@@ -50,7 +50,7 @@ std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) {
   // Per disk and window: about one and a half times the disks of the lanes are frozen, and half the mean free times in
   // a window are collisions, which take about as long.
   strips_ = strips;
-  look_for_top_speed();
+  survey();
   const double collisions = 0.5 * window_length() * beats_per_epoch / state_.epoch_length;
   return strips / (1 + 1.5 * in_lanes / collisions) > 1.2 ? strips : 1;
 }
@@ -125,7 +125,7 @@ void IsaEngine::divide() {
   // A disk that goes from one strip to the next has been frozen in every window on its way through the lane.
   const double windows = (whole_.neighbours().grid().height(lane) - 2 * tables_.leash[true]) / way();
   windows_between_copies_ = windows < 24 ? windows > 1 ? static_cast<unsigned>(windows) : 1 : 24;
-  look_for_top_speed();
+  survey();
   const double window = window_length(), lead = mean_lead();
   for (std::uint32_t s = 0; s < n; ++s) {
     const std::uint32_t from = border(s) - lane / 2 + lane, to = border(s + 1) - lane / 2;
@@ -194,26 +194,29 @@ bool IsaEngine::any_failed() const {
   return any;
 }
 
-/// A frozen disk is trusted not to be faster than six thermal speeds, beyond which there is one in 10^8, nor than the
-/// fastest of all now.
-void IsaEngine::look_for_top_speed() {
+/// How fast disks may be, and how long lists are. A frozen disk is trusted not to be faster than six thermal speeds,
+/// beyond which there is one in 10^8, nor than the fastest of all now.
+void IsaEngine::survey() {
   struct alignas(64) Part {
     double energy, fastest[species_count];  // fastest: squares
+    std::uint32_t longest_list;
   };
   const std::size_t size = tables_.size, threads = strips_;
   Array<Part> parts(threads);
   crew->work(strips_, [&](unsigned s) {
-    Part part{0, {0, 0}};
+    Part part{0, {0, 0}, 0};
     for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i) {
       const Record& disk = tables_.records[i];
       const double square = disk.vx * disk.vx + disk.vy * disk.vy;
       part.energy += state_.mixture.mass[disk.species] * square / 2;
       part.fastest[disk.species] = std::fmax(part.fastest[disk.species], square);
+      part.longest_list = std::max<std::uint32_t>(part.longest_list, disk.neighbour_count);
     }
     parts[s] = part;
   });
   double energy = 0;
-  for (const Part& part : parts) energy += part.energy;
+  longest_list_ = 0;
+  for (const Part& part : parts) energy += part.energy, longest_list_ = std::max(longest_list_, part.longest_list);
   for (const int species : {small, big}) {
     double fastest = 0;
     for (const Part& part : parts) fastest = std::fmax(fastest, part.fastest[species]);
@@ -226,9 +229,9 @@ void IsaEngine::look_for_top_speed() {
 }
 
 /// Keeps the disks as they are, for undo. The calendars are made anew, before a disk that has an entry in one can have
-/// gone through a lane to another strip.
+/// gone through a lane to another strip. Lists get more room before one is full: in a window they may not move.
 void IsaEngine::keep() {
-  look_for_top_speed();
+  survey();
   const std::size_t size = tables_.size, threads = strips_;
   if (kept_records_.size() != size) {
     kept_records_ = Array<Record>(size);
@@ -243,6 +246,7 @@ void IsaEngine::keep() {
     shifted_[s].clear_outbox();
   });
   whole_.clear_outbox();
+  whole_.neighbours().make_room(longest_list_ + 2);
   kept_tally_ = state_.tally;
   kept_now_ = state_.now;
   windows_since_kept_ = 0;
