@@ -30,6 +30,9 @@ Measured smallest_exponent(const StatePoint& point) {
   return {*at, slope.error[static_cast<std::size_t>(at - slope.y.begin())]};
 }
 
+/// Whether the smallest local exponent is below 1: the smallest of many is low by chance.
+bool is_caged(const Measured& smallest) { return smallest.value < 1 - significant_extreme * smallest.error; }
+
 Check cages(const Family& family) {
   Check check{"A cage for η ≥ 0.70: the smallest local exponent is below 1", Outcome::not_enough_data,
               "There are no runs at η ≥ 0.70."};
@@ -37,8 +40,8 @@ Check cages(const Family& family) {
   for (const StatePoint* point : family.points) {
     const Measured exponent = smallest_exponent(*point);
     if (point->packing_fraction() < 0.6999 || !std::isfinite(exponent.error)) continue;
-    // The smallest of many is low by chance: that it is above 1 says more than that it is below.
-    std::string& list = exponent.value < 1 - significant_extreme * exponent.error ? caged
+    // That the smallest of many is above 1 says more than that it is below.
+    std::string& list = is_caged(exponent)                                        ? caged
                         : exponent.value > 1 + significant_order * exponent.error ? free
                                                                                   : unclear;
     list += fmt::format(" {} at η = {:g};", with_error(exponent.value, exponent.error), point->packing_fraction());
@@ -59,17 +62,23 @@ Check diffusion_regained(const Family& family) {
   Check check{"Diffusion is regained at long times for η = 0.70 to 0.77", Outcome::not_enough_data,
               "There are no runs at these densities."};
   std::string diffusive, slower;
+  bool any_caged = false;
   for (const StatePoint* point : family.points) {
     const double density = point->packing_fraction();
     const auto msd = displacement(*point);
     if (density < 0.6999 || density > 0.7701 || !msd) continue;
     const Curve slope = local_exponent(*msd);
     if (slope.y.empty() || slope.error.empty()) continue;
+    any_caged = any_caged || is_caged(smallest_exponent(*point));
     const Measured last{slope.y.back(), slope.error.back()};
     const bool regained = last.value > 0.9 && msd->y.back() > 1;
     (regained ? diffusive : slower) += fmt::format(" {} at η = {:g};", with_error(last.value, last.error), density);
   }
   if (diffusive.empty() && slower.empty()) return check;
+  if (!any_caged) {
+    check.finding = "None of the runs at these densities shows a cage from which diffusion could be regained.";
+    return check;
+  }
   check.outcome = slower.empty() ? Outcome::agrees : Outcome::not_enough_data;
   check.finding = slower.empty() ? "Last local exponents:" + diffusive
                                  : "Not yet above 0.9 beyond MSD = 1, so these runs are too short:" + slower;
