@@ -32,13 +32,13 @@ struct Tables {
   Array<Record> records;  ///< one more than there are disks: it fills up lists
   Array<ColdRecord> cold;
   NeighbourTable neighbours;
-  /// How far a disk may move from the centre of its list: shorter where frozen disks may come, and by half of their
-  /// way; longer (roomy) elsewhere.
+  /// How far a disk may move from the centre of its list: half the skin where it is roomy (true); less by half the way
+  /// of a frozen disk where one may come.
   double leash[2] = {0, 0};
 
-  /// Where several threads work, by the row of the list centre: disks that stand in a lane or so near one that they are
-  /// on the short leash and may be frozen; those beyond, as far as these reach, are on the short leash; all others are
-  /// on the long one. Without threads there are no rows: all are.
+  /// Where several threads work, by the row of the list centre: disks that stand in a lane or so near one that they may
+  /// be frozen, and those beside, as far as these may reach, are on the short leash; all others on the long one.
+  /// Without threads there are no rows, and all are.
   enum class Zone : std::uint8_t { near_lane, beside, roomy };
   Array<Zone> zones;
   [[nodiscard]] Zone zone(std::uint32_t row) const { return zones.size() == 0 ? Zone::roomy : zones[row]; }
