@@ -23,8 +23,16 @@ class BruteForce(Frames):
             self.check_structure(file["structure"])
             self.check_gaussian(file["dynamics"])
             temperatures = file["timeseries/intervals/temperature_all"][:]
+            series = {name: file["timeseries"][name][:]
+                      for name in ("time", "temperature_all", "temperature_small", "temperature_big")}
         velocity = relative(self.velocity)
         kinetic = (MASS[:, None] * velocity**2).sum(axis=2).mean(axis=1) / 2
+        frames = numpy.rint(series["time"] / STEP).astype(int)
+        self.assertEqual(list(frames[:4]), [0, 1, 2, 3])
+        self.close(series["time"], STEP * frames)
+        for name, members in GROUPS.items():
+            energy = MASS[members, None] * velocity[:, members]**2 / 2
+            self.close(series[f"temperature_{name}"], energy.sum(axis=2).mean(axis=1)[frames])
         # An interval's samples begin at its start; its end belongs to the next one.
         self.close(temperatures, [kinetic[b * STEPS:(b + 1) * STEPS].mean() for b in range(BLOCKS)])
         summary = json.loads((out / "summary.json").read_text())

@@ -4,18 +4,31 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "sandglass/core/errors.h"
 #include "sandglass/observe/portable.h"
 
 namespace sandglass {
 
-Timeseries::Timeseries(const Population& population, double first_time, std::uint64_t per_decade)
-    : population_(population), times_{0.0} {
+namespace {
+
+std::vector<double> log_spaced(double first_time, std::uint64_t per_decade) {
   constexpr std::uint64_t decades = 16;
   const double step = std::numbers::ln10 / static_cast<double>(per_decade);
+  std::vector<double> times{0.0};
   for (std::uint64_t j = 0; j <= decades * per_decade; ++j)
-    times_.push_back(first_time * portable_exp(static_cast<double>(j) * step));
+    times.push_back(first_time * portable_exp(static_cast<double>(j) * step));
+  return times;
+}
+
+}  // namespace
+
+Timeseries::Timeseries(const Population& population, double first_time, std::uint64_t per_decade)
+    : Timeseries(population, log_spaced(first_time, per_decade)) {}
+
+Timeseries::Timeseries(const Population& population, std::vector<double> times)
+    : population_(population), times_(std::move(times)) {
   for (auto* values : {&collisions_, &all_, &small_, &big_}) values->resize(times_.size());
 }
 

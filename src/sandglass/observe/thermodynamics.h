@@ -15,6 +15,8 @@ namespace sandglass {
 class Timeseries {
  public:
   explicit Timeseries(const Population& population, double first_time, std::uint64_t per_decade = 20);
+  /// The same at these times.
+  Timeseries(const Population& population, std::vector<double> times);
 
   [[nodiscard]] double next_sample() const;
   void sample(const Frame& frame);

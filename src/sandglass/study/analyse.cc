@@ -74,6 +74,14 @@ MeasurementPlan plan_of(const Timing& timing, const AnalysisOptions& options) {
   return plan;
 }
 
+/// Times of frames for the series of temperatures: logarithmic, as a run has them, twenty to a decade.
+std::vector<double> series_times(const Timing& timing) {
+  std::vector<double> times{0};
+  for (double next = 1; next < static_cast<double>(timing.frames); next = std::fmax(next + 1, std::round(next * 1.122)))
+    times.push_back(next * timing.step);
+  return times;
+}
+
 /// Shows an observer of evenly spaced moments all that is due up to half a step after `frame`.
 template <class Observer>
 void show(Observer& observer, Frame& frame, double step) {
@@ -112,6 +120,7 @@ Analysis analyse(const std::filesystem::path& trajectory, const std::filesystem:
   const Population population = population_of(disks);
   Correlator correlator(plan, population, make_frame_schedule(plan, plan.temperature_samples));
   IntervalAverages averages(plan, population);
+  Timeseries temperatures(population, series_times(timing));
   StructureSampler structure(plan, population);
   Frame frame;
   double first_collisions = 0, last_collisions = 0;
@@ -120,14 +129,18 @@ Analysis analyse(const std::filesystem::path& trajectory, const std::filesystem:
     last_collisions = frame.collisions_per_disk;
     frame.time = static_cast<double>(used) * timing.step;
     structure.sample(frame);
-    if (timing.frames > 1) show(correlator, frame, timing.step), show(averages, frame, timing.step);
+    if (timing.frames > 1) {
+      show(correlator, frame, timing.step);
+      show(averages, frame, timing.step);
+      show(temperatures, frame, timing.step);
+    }
     report_progress(progress, "measuring", static_cast<double>(used + 1) / static_cast<double>(timing.frames));
     return used + 1 < timing.frames;
   });
 
   std::vector<Dataset> datasets = structure.results();
   if (timing.frames > 1)
-    for (const auto& more : {correlator.results(), averages.results()})
+    for (const auto& more : {correlator.results(), averages.results(), temperatures.results()})
       datasets.insert(datasets.end(), more.begin(), more.end());
   std::erase_if(datasets, [&](const Dataset& dataset) {
     return (!reader.has_velocities() && needs_velocities(dataset)) ||
