@@ -5,7 +5,7 @@
 
 namespace sandglass {
 
-/// Threads wait asleep between one piece of work and the next.
+/// Threads wait asleep between one piece of work and the next, after watching for it for a moment.
 class Crew {
  public:
   explicit Crew(unsigned threads);
