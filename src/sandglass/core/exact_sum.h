@@ -26,6 +26,22 @@ class ExactSum {
     }
   }
 
+  /// Adds eight terms.
+  [[gnu::always_inline]] void add(const double (&terms)[8]) {
+    constexpr double shift = 0x1.8p52 * quantum;
+    std::int64_t sum = 0;
+    bool all_small = true;
+    for (const double term : terms) {
+      sum += std::bit_cast<std::int64_t>(term + shift) - std::bit_cast<std::int64_t>(shift);
+      all_small &= std::fabs(term) < 0x1p51 * quantum;
+    }
+    if (all_small) [[likely]] {
+      total_ += sum;
+    } else {
+      for (const double term : terms) add(term);
+    }
+  }
+
   void add(const ExactSum& other) { total_ += other.total_; }
   void subtract(const ExactSum& other) { total_ -= other.total_; }
 

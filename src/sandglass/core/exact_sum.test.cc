@@ -40,6 +40,23 @@ TEST_CASE("each term is rounded to the nearest quantum, small and large terms al
   }
 }
 
+TEST_CASE("eight terms at once are the same as one by one") {
+  std::mt19937_64 generator(2);
+  std::uniform_real_distribution<double> exponent(-60, 20);
+  for (int i = 0; i < 1000; ++i) {
+    double terms[8];
+    ExactSum one_by_one, together;
+    for (double& term : terms) {
+      term = std::exp2(exponent(generator)) * (generator() % 2 ? 1 : -1);
+      if (i % 2 == 0) term = std::fmod(term, 128);  // else some are beyond what can be added fast
+      one_by_one.add(term);
+    }
+    together.add(terms);
+    CHECK(one_by_one == together);
+  }
+  CHECK_THROWS_AS(ExactSum().add({1, 2, std::nan(""), 4, 5, 6, 7, 8}), RunError);
+}
+
 TEST_CASE("a sum that cancels is exactly zero") {
   ExactSum sum;
   for (const double term : {1e9, 0.1, 3e-7}) sum.add(term);

@@ -60,12 +60,35 @@ class Calendar {
   };
   [[nodiscard]] Coming coming(std::size_t n) const { return {sorted_[head_ + n].time, sorted_[head_ + n].slot}; }
 
+  /// The earliest of what has been entered into the open window since it opened.
+  [[nodiscard]] double late_soonest() const { return late_soonest_; }
+
+  /// Takes out the earliest of what was entered late, and returns its slot; no_disk, and nothing, if there are several
+  /// at one time.
+  std::uint32_t take_late() {
+    const Choice choice = soonest_late();
+    if (choice.slot != no_disk) take(choice);
+    return choice.slot;
+  }
+  /// Puts back what take_late has taken out.
+  void put_back(double time, std::uint32_t slot) { enter_late(time, slot); }
+
+  /// Takes out the next `count` of the sorted entries.
+  void take_ahead(std::size_t count) { head_ += count; }
+
+  /// Where the tables fit into the cache: brings what the n-th entry's successors will need from one level of it to the
+  /// next. `fetch(slot)` does so with what belongs to the disk itself.
+  template <class Fetch>
+  [[gnu::always_inline]] void fetch_ahead(std::size_t n, const Record* records, Fetch&& fetch) const {
+    prefetch(&records[sorted_[head_ + n + 26].slot]);
+    fetch(sorted_[head_ + n + 16].slot);
+  }
+
   /// Some three leads ahead: what comes later for a slot need not be entered yet, it is enough to look again then. Most
   /// often something else will have come before, and the entry would only have been in the way. Not the same time for
   /// any two slots: entries at one time are slow to order.
   [[nodiscard]] double horizon(std::uint32_t slot) const {
-    const double part = 0x1p-32 * (slot * 0x9e3779b9u);
-    return closes_ + (2.7 + 0.9 * part) * lead_;
+    return closes_ + lead_ * (2.7 + 0.9 * 0x1p-32 * (slot * 0x9e3779b9u));
   }
 
   /// Goes on from time t, after everything before it has been taken out and while nothing later is in.
@@ -110,10 +133,9 @@ class Calendar {
       ++head_;
       if (out_of_cache_) {
         for (unsigned stage = 0; stage < fetch_stages; ++stage)
-          if (const Entry& later = sorted_[head_ + fetch_ahead[stage]]; later.time < nothing) fetch(stage, later.slot);
-      } else {  // from one level of the cache to the next
-        prefetch(&records[sorted_[head_ + 8].slot]);
-        if (const Entry& later = sorted_[head_ + 4]; later.time < nothing) fetch(0, later.slot);
+          if (const Entry& later = sorted_[head_ + stages_ahead[stage]]; later.time < nothing) fetch(stage, later.slot);
+      } else {
+        fetch_ahead(0, records, [&](std::uint32_t i) { fetch(0, i); });
       }
       if (states(records[next.slot], next.time)) [[likely]]
         return next.slot;
@@ -123,8 +145,8 @@ class Calendar {
  private:
   static constexpr std::uint32_t none = 0xffffffffu;
   static constexpr double nothing = std::numeric_limits<double>::infinity();
-  static constexpr unsigned fetch_stages = 4, fetch_ahead[fetch_stages] = {12, 8, 5, 2};  // events
-  static constexpr std::size_t beyond_end = 32;  // entries for nobody after the sorted ones
+  static constexpr unsigned fetch_stages = 4, stages_ahead[fetch_stages] = {12, 8, 5, 2};  // events
+  static constexpr std::size_t beyond_end = 40;  // entries for nobody after the sorted ones
 
   struct Entry {
     double time;
@@ -211,6 +233,19 @@ class Calendar {
     for (std::size_t i = 0; i < late_count_; ++i)
       if (late_times_[i] == earliest) consider(earliest, late_slots_[i], true, i);
     return best;
+  }
+
+  /// The earliest of the late entries, or no_disk if there are several at that time.
+  [[nodiscard]] Choice soonest_late() const {
+    Choice choice;
+    for (std::size_t i = 0; i < late_count_; i += 8) {
+      const auto [soonest, lanes] = smallest_of_8(&late_times_[i]);
+      if (soonest != late_soonest_) continue;
+      if (choice.slot != no_disk || (lanes & (lanes - 1)) != 0) return {};
+      const std::size_t place = i + static_cast<unsigned>(__builtin_ctz(lanes));
+      choice = {late_soonest_, late_slots_[place], true, place};
+    }
+    return choice;
   }
 
   void take(const Choice& choice) {

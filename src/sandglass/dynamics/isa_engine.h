@@ -29,6 +29,7 @@ class IsaEngine final : public Engine {
 
   OverlappingPair make_lists();
   void make_calendar();
+  [[nodiscard]] bool works_in_batches() const;
   [[nodiscard]] Fault fault_of(std::uint32_t i);
   [[nodiscard]] double mean_lead() const;
   [[nodiscard]] Calendar calendar_for(double lead, std::size_t size) const;

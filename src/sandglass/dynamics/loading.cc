@@ -32,12 +32,20 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
   }
   state_.disks = std::vector<Disk>();  // gives the memory back
   windows_done_ = undone_ = 0;
+  tables_.in_batches = works_in_batches();
   const OverlappingPair deepest = make_lists();
   if (strips_ == 1)
     make_calendar();
   else
     divide();
   return deepest;
+}
+
+/// With few disks most events are beside one another; with many, memory is waited for, and a batch asks for too much of
+/// it at a time; kicks would end most batches (bench/RESULTS.md).
+bool IsaEngine::works_in_batches() const {
+  if (tuning_.batches != Tuning::Batches::where_faster) return tuning_.batches == Tuning::Batches::always;
+  return state_.drive.kind == DriveKind::none && tables_.size >= 2000 && tables_.size <= 20000;
 }
 
 /// Lists and predictions for the records as they are. Returns the deepest overlap beyond rounding, if any.

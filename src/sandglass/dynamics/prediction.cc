@@ -1,7 +1,7 @@
 // What comes next for a disk: its earliest contact, kick, transit or list expiry.
 #include <cmath>
 
-#include "sandglass/dynamics/simd.h"
+#include "sandglass/dynamics/contact_vector.h"
 #include "sandglass/dynamics/strip.h"
 
 namespace sandglass {
@@ -67,30 +67,17 @@ Strip::Foreseen Strip::earliest_contact_by_rule(std::uint32_t i) const {
 
 #ifdef SANDGLASS_SIMD
 
-/// One block of the list: contact_time, lane by lane, the same operations in the same order. `amend` may change the
-/// columns of the listed records (x, y, vx, vy, time, next_time, radius), and says which lanes count.
+/// One disk with one block of its list. `amend` may change the columns of the listed records, and says which lanes
+/// count.
 template <class Amend>
 [[gnu::always_inline]] inline Strip::Lanes Strip::contacts_of_block(const Flight& disk, double disk_radius,
                                                                     const std::uint32_t* list, Amend&& amend) const {
-  const Vector x = Vector::all(disk.x), y = Vector::all(disk.y), vx = Vector::all(disk.vx), vy = Vector::all(disk.vy);
-  const Vector time = Vector::all(disk.time), radius = Vector::all(disk_radius);
-  const Vector zero = Vector::all(0);
+  const FlightColumns columns{Vector::all(disk.x),  Vector::all(disk.y),    Vector::all(disk.vx),
+                              Vector::all(disk.vy), Vector::all(disk.time), Vector::all(disk_radius)};
   Vector other[8];
   load_columns(records_, list, other);
   const Mask counts = amend(other);
-  const Vector t = max(time, other[4]);
-  const Vector flight = t - time, other_flight = t - other[4];
-  const Vector rx = nearest(fma(other[2], other_flight, other[0]) - fma(vx, flight, x), box_);
-  const Vector ry = nearest(fma(other[3], other_flight, other[1]) - fma(vy, flight, y), box_);
-  const Vector ux = other[2] - vx, uy = other[3] - vy;
-  const Vector ru = fma(rx, ux, ry * uy), contact = radius + other[6];
-  const Vector c = fma(rx, rx, fms(ry, ry, contact * contact));
-  const Vector discriminant = fms(ru, ru, fma(ux, ux, uy * uy) * c);
-  const Mask touching = c <= zero;
-  const Vector wait = choose(touching, zero, c / (sqrt(discriminant) - ru));
-  const Vector when = t + wait;
-  const Mask meets = counts & (ru < zero) & (touching | (zero <= discriminant)) & (when <= other[5]);
-  const Vector candidate = choose(meets, when, Vector::all(never));
+  const Vector candidate = contact_times(columns, other, counts, box_);
   const double soonest = smallest(candidate);
   return {soonest, (candidate == Vector::all(soonest)).lanes(), (candidate < other[5]).lanes()};
 }

@@ -36,6 +36,7 @@ struct Vector {
   static constexpr unsigned width = 8;
   __m512d v;
   static Vector all(double x) { return {_mm512_set1_pd(x)}; }
+  static Vector load(const double* in) { return {_mm512_load_pd(in)}; }
   void store(double* out) const { _mm512_store_pd(out, v); }
   friend Vector operator+(Vector a, Vector b) { return {_mm512_add_pd(a.v, b.v)}; }
   friend Vector operator-(Vector a, Vector b) { return {_mm512_sub_pd(a.v, b.v)}; }
@@ -50,6 +51,7 @@ inline Vector fms(Vector a, Vector b, Vector c) { return {_mm512_fmsub_pd(a.v, b
 inline Vector fnma(Vector a, Vector b, Vector c) { return {_mm512_fnmadd_pd(a.v, b.v, c.v)}; }  // c - ab
 inline Vector sqrt(Vector a) { return {_mm512_sqrt_pd(a.v)}; }
 inline Vector max(Vector a, Vector b) { return {_mm512_max_pd(a.v, b.v)}; }
+inline Vector min(Vector a, Vector b) { return {_mm512_min_pd(a.v, b.v)}; }
 inline Vector nearest_integer(Vector a) {
   return {_mm512_roundscale_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
 }
@@ -61,6 +63,23 @@ inline Mask other_than(const std::uint32_t* entries, std::uint32_t value) {
 }
 
 inline Mask everywhere() { return {0xff}; }
+
+/// The least of each of eight rows of eight.
+inline void smallest_of_rows(const double* rows, double* out) {
+  __m512d pairs[4], quarters[2];
+  for (int i = 0; i < 4; ++i) {
+    const __m512d a = _mm512_load_pd(rows + 16 * i), b = _mm512_load_pd(rows + 16 * i + 8);
+    pairs[i] = _mm512_min_pd(_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
+  }
+  auto halve = [](__m512d a, __m512d b) {
+    return _mm512_min_pd(_mm512_shuffle_f64x2(a, b, 0x88), _mm512_shuffle_f64x2(a, b, 0xdd));
+  };
+  for (int i = 0; i < 2; ++i) quarters[i] = halve(pairs[2 * i], pairs[2 * i + 1]);
+  _mm512_store_pd(out, halve(quarters[0], quarters[1]));
+}
+inline unsigned equal_lanes(const double* row, double value) {
+  return _mm512_cmp_pd_mask(_mm512_load_pd(row), _mm512_set1_pd(value), _CMP_EQ_OQ);
+}
 
 inline Smallest smallest_of_8(const double* x) {
   const Vector v = {_mm512_load_pd(x)};
@@ -104,6 +123,7 @@ struct Vector {
   static constexpr unsigned width = 4;
   __m256d v;
   static Vector all(double x) { return {_mm256_set1_pd(x)}; }
+  static Vector load(const double* in) { return {_mm256_load_pd(in)}; }
   void store(double* out) const { _mm256_store_pd(out, v); }
   friend Vector operator+(Vector a, Vector b) { return {_mm256_add_pd(a.v, b.v)}; }
   friend Vector operator-(Vector a, Vector b) { return {_mm256_sub_pd(a.v, b.v)}; }
@@ -118,6 +138,7 @@ inline Vector fms(Vector a, Vector b, Vector c) { return {_mm256_fmsub_pd(a.v, b
 inline Vector fnma(Vector a, Vector b, Vector c) { return {_mm256_fnmadd_pd(a.v, b.v, c.v)}; }  // c - ab
 inline Vector sqrt(Vector a) { return {_mm256_sqrt_pd(a.v)}; }
 inline Vector max(Vector a, Vector b) { return {_mm256_max_pd(a.v, b.v)}; }
+inline Vector min(Vector a, Vector b) { return {_mm256_min_pd(a.v, b.v)}; }
 inline Vector nearest_integer(Vector a) {
   return {_mm256_round_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
 }
@@ -132,6 +153,19 @@ inline Mask everywhere() { return {_mm256_castsi256_pd(_mm256_set1_epi32(-1))}; 
 inline double smallest(Vector a) {
   const __m128d half = _mm_min_pd(_mm256_castpd256_pd128(a.v), _mm256_extractf128_pd(a.v, 1));
   return _mm_cvtsd_f64(_mm_min_sd(half, _mm_unpackhi_pd(half, half)));
+}
+
+inline void smallest_of_rows(const double* rows, double* out) {
+  for (int i = 0; i < 8; i += 2, rows += 16) {
+    const __m256d a = _mm256_min_pd(_mm256_load_pd(rows), _mm256_load_pd(rows + 4));
+    const __m256d b = _mm256_min_pd(_mm256_load_pd(rows + 8), _mm256_load_pd(rows + 12));
+    const __m256d pairs = _mm256_min_pd(_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+    _mm_store_pd(out + i, _mm_min_pd(_mm256_castpd256_pd128(pairs), _mm256_extractf128_pd(pairs, 1)));
+  }
+}
+inline unsigned equal_lanes(const double* row, double value) {
+  const Vector low = Vector::load(row), high = Vector::load(row + 4), all = Vector::all(value);
+  return (low == all).lanes() | (high == all).lanes() << 4;
 }
 
 inline Smallest smallest_of_8(const double* x) {
@@ -161,6 +195,26 @@ inline void load_columns(const Row* rows, const std::uint32_t* list, Vector (&ou
 template <class Box>
 [[gnu::always_inline]] inline Vector nearest(Vector difference, const Box& box) {
   return fnma(Vector::all(box.length), nearest_integer(difference * Vector::all(box.inverse)), difference);
+}
+
+/// Which of eight points in fixed point (x and y of 32 bits each, aligned to 64 bytes) are within `range` of another in
+/// both coordinates: bits 0, 2, 4 ...
+inline unsigned lanes_within(const std::uint64_t* points, std::uint64_t point, std::uint32_t range) {
+#if defined(__AVX512F__)
+  const __m512i away = _mm512_sub_epi32(_mm512_load_si512(points), _mm512_set1_epi64(static_cast<long long>(point)));
+  const unsigned within = _mm512_cmple_epu32_mask(_mm512_abs_epi32(away), _mm512_set1_epi32(static_cast<int>(range)));
+#else
+  unsigned within = 0;
+  const __m256i limit = _mm256_set1_epi32(static_cast<int>(range));
+  for (int half = 0; half < 2; ++half) {
+    const __m256i away =
+        _mm256_abs_epi32(_mm256_sub_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(points) + half),
+                                          _mm256_set1_epi64x(static_cast<long long>(point))));
+    const __m256i inside = _mm256_cmpeq_epi32(_mm256_max_epu32(away, limit), limit);
+    within |= static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(inside))) << 8 * half;
+  }
+#endif
+  return within & within >> 1 & 0x5555;
 }
 
 /// Which of eight entries, aligned to 32 bytes, equal `value`.

@@ -17,7 +17,9 @@ struct Tuning {
   double skin = 0;           ///< width of the neighbour lists beyond contact, in R_s
   double cell_size = 0;      ///< least side of a cell of the look-up grid, in R_s
   double window_events = 0;  ///< events in a window of the calendar
-  unsigned threads = 1;      ///< at most; fewer where the box is too small for as many strips
+  /// Whether events are worked out several at a time (batch.cc).
+  enum class Batches : std::uint8_t { where_faster, never, always } batches = Batches::where_faster;
+  unsigned threads = 1;  ///< at most; fewer where the box is too small for as many strips
   // For tests of what several threads do:
   std::uint32_t strip_rows = 0;  ///< least height of a strip, in rows of the grid
   double window_part = 0;        ///< how far the fastest disk may fly in a window, in skins

@@ -26,6 +26,9 @@ Strip::Strip(Tables& tables)
       neighbours_(tables.neighbours) {
   for (const int a : {small, big})
     for (const int b : {small, big}) masses_[a][b] = tables.masses[a][b];
+  if (tables.size == 0) return;
+  const double range = neighbours_.longest_range() / neighbours_.grid().unit() + 2;
+  range_ = range < 0xffffffffu ? static_cast<std::uint32_t>(range) : 0xffffffffu;
 }
 
 Strip::Strip(Tables& tables, Rows core, std::uint32_t reach, std::uint32_t lane) : Strip(tables) {
@@ -40,7 +43,10 @@ void Strip::run(double end) {
   auto in_order = [this](std::uint32_t a, std::uint32_t b) { return before(a, b); };
   auto fetch_stage = [this](unsigned stage, std::uint32_t i) { fetch(stage, i); };
   auto pop = [&] { return calendar_.pop(records_, end_, in_order, fetch_stage); };
-  for (std::uint32_t i = pop(); i != no_disk; i = pop()) {
+  for (;;) {
+    if (tables_->in_batches && run_batch()) continue;
+    const std::uint32_t i = pop();
+    if (i == no_disk) return;
     assert(owns(i));
     const Record& disk = records_[i];
     const double t = disk.next_time;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sandglass/dynamics/array.h"
+#include "sandglass/dynamics/batch.h"
 #include "sandglass/dynamics/calendar.h"
 #include "sandglass/dynamics/contact.h"
 #include "sandglass/dynamics/drive.h"
@@ -112,6 +113,21 @@ class alignas(128) Strip {
     std::uint32_t slot, row;
   };
 
+  // several events together, see batch.cc
+  bool run_batch();
+  void gather();
+  bool describe(unsigned m, unsigned& special);
+  void fly();
+  unsigned collide_all();
+  void search_listed();
+  void approach_listed(unsigned n);
+  void meet_listed(unsigned n);
+  void search_far();
+  void consider(unsigned lane, double when, std::uint32_t partner, unsigned tied);
+  void foresee_all_else();
+  unsigned carry_out_batch();
+  [[nodiscard]] std::uint32_t nobody() const { return static_cast<std::uint32_t>(tables_->size); }
+
   void on_contact(std::uint32_t i, std::uint32_t j, double t);
   void on_kick(std::uint32_t i, double t);
   void on_transit(std::uint32_t i, double t);
@@ -199,6 +215,7 @@ class alignas(128) Strip {
   PairMasses masses_[species_count][species_count];
   CollisionLaw law_;
   double leash_[2] = {0, 0};
+  std::uint32_t range_ = 0;  // the longest of the lists, in units of the grid's fixed point
   Neighbours neighbours_;
   Calendar calendar_;
   double end_ = 0;              // of the present run
@@ -207,9 +224,10 @@ class alignas(128) Strip {
   double progress_time_ = -never;
   Tally tally_;
   Simulation::Bookkeeping bookkeeping_;
-  GrowingArray<DiskName> candidates_;       // possible partners of a kick
-  DrawnKicks drawn_kicks_{};                // some that come soon
-  double drawn_until_ = -never;             // when the last of them comes
+  GrowingArray<DiskName> candidates_;                                // possible partners of a kick
+  Batch batch_{.nobody = {.next_time = never, .partner = no_disk}};  // events that come next, worked out together
+  DrawnKicks drawn_kicks_{};                                         // some that come soon
+  double drawn_until_ = -never;                                      // when the last of them comes
   std::uint32_t likely_partners_[16] = {};  // of kicks that come soon, by slot modulo 16; only for what to fetch
 
   Rows core_;                // the disks that stand here are the strip's own

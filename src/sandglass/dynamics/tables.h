@@ -43,6 +43,8 @@ struct Tables {
   Array<Zone> zones;
   [[nodiscard]] Zone zone(std::uint32_t row) const { return zones.size() == 0 ? Zone::roomy : zones[row]; }
   Window window;
+
+  bool in_batches = false;  ///< events are worked out several at a time (batch.cc)
 };
 
 }  // namespace SANDGLASS_ISA
