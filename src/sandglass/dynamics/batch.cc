@@ -63,7 +63,7 @@ bool Strip::run_batch() {
       break;
     batch.slot[picked] = entry.slot;
     batch.time[picked] = entry.time;
-    batch.entries[picked] = static_cast<std::uint8_t>(n + 1);
+    batch.entries[picked] = n + 1;
     picked += records_[entry.slot].next_time == entry.time;
   }
 
@@ -183,9 +183,9 @@ bool Strip::run_batch() {
   unsigned searches = 0;
   for (unsigned m = 0; m < Batch::size; ++m) {
     const unsigned counts = m < batch.count, two = batch.contact[m];
-    batch.lane[searches] = static_cast<std::uint8_t>(m);
+    batch.lane[searches] = m;
     searches += counts;
-    batch.lane[searches] = static_cast<std::uint8_t>(m + Batch::size);
+    batch.lane[searches] = m + Batch::size;
     searches += counts & two;
   }
   batch.searches = searches;
@@ -266,7 +266,7 @@ bool Strip::run_batch() {
     }
     for (unsigned k = Batch::listed; k < last; ++k, ++far) {
       batch.far_slot[far] = list[k] != other ? list[k] : nobody();
-      batch.far_lane[far] = static_cast<std::uint8_t>(lane);
+      batch.far_lane[far] = lane;
       batch.far_x[far] = batch.x[lane], batch.far_y[far] = batch.y[lane];
       batch.far_vx[far] = batch.vx[lane], batch.far_vy[far] = batch.vy[lane];
       batch.far_time[far] = batch.flown_to[lane], batch.far_radius[far] = disk.radius;
@@ -343,12 +343,12 @@ bool Strip::run_batch() {
     entered += really;
     soonest = t < soonest ? t : soonest;
   };
-  auto write = [&](std::uint32_t i, unsigned lane) SANDGLASS_INLINE {
+  auto write = [&](std::uint32_t i, unsigned lane, double t) SANDGLASS_INLINE {
     Record& disk = records[i];
     disk.x = batch.x[lane], disk.y = batch.y[lane], disk.vx = batch.vx[lane], disk.vy = batch.vy[lane];
-    disk.time = batch.flown_to[lane];
+    disk.time = t;
     set_next(disk, never, Next::review, no_disk);
-    cold[i].last_contact = disk.time;
+    cold[i].last_contact = t;
     if ((batch.wrapped >> lane & 1) != 0) [[unlikely]] {
       cold[i].image_x += static_cast<std::int32_t>(batch.image_x[lane]);
       cold[i].image_y += static_cast<std::int32_t>(batch.image_y[lane]);
@@ -391,8 +391,8 @@ bool Strip::run_batch() {
       settle_batched(i, m);
       continue;
     }
-    write(i, m);
-    write(j, m + Batch::size);
+    write(i, m, t);
+    write(j, m + Batch::size, t);
     ++tally_.contacts[records[i].species + records[j].species];
     tally_.elastic_contacts += batch.elastic[m];
     if (log) [[unlikely]]

@@ -17,7 +17,7 @@ struct Batch {
   // The events, in order
   unsigned count;
   bool late;                              // the first is not one of the calendar's sorted entries
-  std::uint8_t entries[size];             // of these, how many there are up to the event's own
+  unsigned entries[size];                 // of these, how many there are up to the event's own
   bool contact[size];                     // else a review
   alignas(64) double contact_if_1[size];  // the same
   bool elastic[size];                     // by the TC model
@@ -36,7 +36,7 @@ struct Batch {
 
   // The searches: each for a lane, with the first of its list
   unsigned searches;
-  std::uint8_t lane[lanes + 1];
+  unsigned lane[lanes + 1];
   alignas(64) double ru[lanes][listed], c[lanes][listed],
       discriminant[lanes][listed], from[lanes][listed], limit[lanes][listed], when[lanes][listed];
   bool tied[lanes];
@@ -45,7 +45,7 @@ struct Batch {
   static constexpr unsigned room = lanes * listed + 8;
   alignas(64) std::uint32_t far_slot[room];
   alignas(64) double far_x[room], far_y[room], far_vx[room], far_vy[room], far_time[room], far_radius[room];
-  std::uint8_t far_lane[room];
+  unsigned far_lane[room];
 
   // What has been found for each lane: the earliest contact, and what comes first apart from contacts
   alignas(64) double soonest[lanes], otherwise[lanes];
