@@ -29,14 +29,14 @@ class ExactSum {
   /// Adds eight terms.
   [[gnu::always_inline]] void add(const double (&terms)[8]) {
     constexpr double shift = 0x1.8p52 * quantum;
-    std::int64_t sum = 0;
+    std::uint64_t sum = 0;  // of eight differences below 2^52; where they are larger it is not used
     bool all_small = true;
     for (const double term : terms) {
-      sum += std::bit_cast<std::int64_t>(term + shift) - std::bit_cast<std::int64_t>(shift);
+      sum += std::bit_cast<std::uint64_t>(term + shift) - std::bit_cast<std::uint64_t>(shift);
       all_small &= std::fabs(term) < 0x1p51 * quantum;
     }
     if (all_small) [[likely]] {
-      total_ += sum;
+      total_ += static_cast<std::int64_t>(sum);
     } else {
       for (const double term : terms) add(term);
     }

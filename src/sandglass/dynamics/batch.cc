@@ -25,18 +25,21 @@ inline namespace SANDGLASS_ISA {
 
 /// Does some of the next events. False if the next one must be done by itself.
 bool Strip::run_batch() {
+  Batch& batch = batch_;
   gather();
-  if (batch_.count == 0) return false;
-  fly();
-  batch_.count = std::min(batch_.count, collide_all());
-  if (batch_.count > 0) {
-    search_listed();
-    search_far();
-    foresee_all_else();
+  if (batch.count > 0) {
+    fly();
+    batch.count = std::min(batch.count, collide_all());
   }
-  const unsigned done = batch_.count > 0 ? carry_out_batch() : 0;
-  if (done == 0 && batch_.late) calendar_.put_back(batch_.time[0], batch_.slot[0]);
-  return done > 0;
+  if (batch.count == 0) {
+    if (batch.late) calendar_.put_back(batch.time[0], batch.slot[0]);
+    return false;
+  }
+  search_listed();
+  search_far();
+  foresee_all_else();
+  carry_out_batch();
+  return true;
 }
 
 /// Takes contacts and reviews from those that come next, up to the first that is something else, or one of whose
@@ -81,7 +84,6 @@ bool Strip::run_batch() {
   }
   batch.count = static_cast<unsigned>(__builtin_ctz(stop));
   if (batch.count == 1 && !batch.late) batch.count = 0;  // one by itself is done faster without
-  if (batch.count == 0 && batch.late) calendar_.put_back(batch.time[0], batch.slot[0]);
 }
 
 /// All that is needed to work out event m. False if it is none for a batch.
@@ -253,7 +255,7 @@ bool Strip::run_batch() {
 /// The rest of the lists, all in common vectors.
 [[gnu::always_inline]] inline void Strip::search_far() {
   Batch& batch = batch_;
-  unsigned far = 0;
+  unsigned far = 0, doubtful = batch.doubtful;
   for (unsigned n = 0; n < batch.searches; ++n) {
     const unsigned lane = batch.lane[n];
     const std::uint32_t i = batch.slot[lane], other = batch.slot[lane ^ Batch::size];
@@ -261,7 +263,7 @@ bool Strip::run_batch() {
     const std::uint32_t* const list = neighbours_.list(i);
     unsigned last = disk.neighbour_count;
     if (last > 2 * Batch::listed) [[unlikely]] {
-      batch.doubtful |= 1u << lane;
+      doubtful |= 1u << lane;
       last = 2 * Batch::listed;
     }
     for (unsigned k = Batch::listed; k < last; ++k, ++far) {
@@ -283,19 +285,16 @@ bool Strip::run_batch() {
     const unsigned strict = (candidate < columns[5]).lanes();
     alignas(64) double when[Vector::width];
     candidate.store(when);
-    for (unsigned k = 0; k < Vector::width && first + k < far; ++k)
-      consider(batch.far_lane[first + k], when[k], batch.far_slot[first + k], (strict >> k & 1) == 0);
+    for (unsigned k = 0; k < Vector::width && first + k < far; ++k) {
+      const unsigned lane = batch.far_lane[first + k];
+      const double before = batch.soonest[lane];
+      const unsigned same = when[k] == before, some = when[k] < never, sooner = when[k] < before;
+      doubtful |= ((same & some) | (sooner & ~(strict >> k))) << lane;
+      batch.partner[lane] = sooner ? batch.far_slot[first + k] : batch.partner[lane];
+      batch.soonest[lane] = sooner ? when[k] : before;
+    }
   }
-}
-
-/// A further contact of a lane's disk.
-[[gnu::always_inline]] inline void Strip::consider(unsigned lane, double when, std::uint32_t partner, unsigned tied) {
-  Batch& batch = batch_;
-  const double before = batch.soonest[lane];
-  const unsigned same = when == before, some = when < never, sooner = when < before;
-  batch.doubtful |= ((same & some) | (sooner & tied)) << lane;
-  batch.partner[lane] = sooner ? partner : batch.partner[lane];
-  batch.soonest[lane] = sooner ? when : before;
+  batch.doubtful = doubtful;
 }
 
 /// Expiry of the list and transit, as in `schedule`.
@@ -328,8 +327,8 @@ bool Strip::run_batch() {
   batch.transits = transits;
 }
 
-/// Writes the events, in order, as long as nothing else comes before the next. How many have been done.
-[[gnu::always_inline]] inline unsigned Strip::carry_out_batch() {
+/// Writes the events, in order, as long as nothing else comes before the next: the first at least.
+[[gnu::always_inline]] inline void Strip::carry_out_batch() {
   Batch& batch = batch_;
   Record* const records = records_;
   ColdRecord* const cold = cold_;
@@ -356,9 +355,10 @@ bool Strip::run_batch() {
   };
   // `settle`, without branches where it cannot be foretold which way they go
   auto settle_batched = [&](std::uint32_t i, unsigned lane) SANDGLASS_INLINE {
-    const bool meets = batch.soonest[lane] <= batch.otherwise[lane];
-    const double t = meets ? batch.soonest[lane] : batch.otherwise[lane];
-    const std::uint32_t partner = meets ? batch.partner[lane] : no_disk;
+    const double contact = batch.soonest[lane], otherwise = batch.otherwise[lane];
+    const std::uint32_t partner = batch.partner[lane];  // if it meets; chosen here, it would become a branch
+    const bool meets = contact <= otherwise;
+    const double t = meets ? contact : otherwise;
     Record& other = meets ? records[partner] : batch.nobody;
     if ((not_plain >> lane & 1) != 0 || !(t < other.next_time)) [[unlikely]]
       return predict(i);
@@ -372,7 +372,7 @@ bool Strip::run_batch() {
     set_next(other, t, Next::contact_entered_by_partner, i);
     set_next(batch.nobody, never, Next::review, no_disk);
     const bool transit = batch.transits >> lane & 1;
-    set_next(records[i], t, meets ? Next::contact : transit ? Next::transit : Next::review, partner);
+    set_next(records[i], t, meets ? Next::contact : transit ? Next::transit : Next::review, meets ? partner : no_disk);
     enter(t, i, true);
   };
 
@@ -407,7 +407,6 @@ bool Strip::run_batch() {
   tally_.dissipated.add(batch.dissipated);
   bookkeeping_.orphans += orphans;
   bookkeeping_.predictions += batch.searches;
-  return m;
 }
 
 #undef SANDGLASS_INLINE

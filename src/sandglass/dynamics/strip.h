@@ -123,9 +123,8 @@ class alignas(128) Strip {
   void approach_listed(unsigned n);
   void meet_listed(unsigned n);
   void search_far();
-  void consider(unsigned lane, double when, std::uint32_t partner, unsigned tied);
   void foresee_all_else();
-  unsigned carry_out_batch();
+  void carry_out_batch();
   [[nodiscard]] std::uint32_t nobody() const { return static_cast<std::uint32_t>(tables_->size); }
 
   void on_contact(std::uint32_t i, std::uint32_t j, double t);
