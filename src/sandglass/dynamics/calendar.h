@@ -81,7 +81,7 @@ class Calendar {
   template <class Fetch>
   [[gnu::always_inline]] void fetch_ahead(std::size_t n, const Record* records, Fetch&& fetch) const {
     prefetch(&records[sorted_[head_ + n + 26].slot]);
-    fetch(sorted_[head_ + n + 16].slot);
+    if (const Entry& later = sorted_[head_ + n + 16]; later.time < nothing) fetch(later.slot);
   }
 
   /// Some three leads ahead: what comes later for a slot need not be entered yet, it is enough to look again then. Most

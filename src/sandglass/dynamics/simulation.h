@@ -17,7 +17,7 @@ struct Tuning {
   double skin = 0;           ///< width of the neighbour lists beyond contact, in R_s
   double cell_size = 0;      ///< least side of a cell of the look-up grid, in R_s
   double window_events = 0;  ///< events in a window of the calendar
-  /// Whether events are worked out several at a time (batch.cc).
+  /// Whether one thread works out several events at a time (batch.cc).
   enum class Batches : std::uint8_t { where_faster, never, always } batches = Batches::where_faster;
   unsigned threads = 1;  ///< at most; fewer where the box is too small for as many strips
   // For tests of what several threads do:

@@ -26,6 +26,7 @@ Strip::Strip(Tables& tables)
       neighbours_(tables.neighbours) {
   for (const int a : {small, big})
     for (const int b : {small, big}) masses_[a][b] = tables.masses[a][b];
+  set_next(batch_.nobody, never, Next::review, no_disk);
   if (tables.size == 0) return;
   const double range = neighbours_.longest_range() / neighbours_.grid().unit() + 2;
   range_ = range < 0xffffffffu ? static_cast<std::uint32_t>(range) : 0xffffffffu;
@@ -43,8 +44,9 @@ void Strip::run(double end) {
   auto in_order = [this](std::uint32_t a, std::uint32_t b) { return before(a, b); };
   auto fetch_stage = [this](unsigned stage, std::uint32_t i) { fetch(stage, i); };
   auto pop = [&] { return calendar_.pop(records_, end_, in_order, fetch_stage); };
+  const bool in_batches = tables_->in_batches && whole_;  // a batch also reads records that it does not need
   for (;;) {
-    if (tables_->in_batches && run_batch()) continue;
+    if (in_batches && run_batch()) continue;
     const std::uint32_t i = pop();
     if (i == no_disk) return;
     assert(owns(i));

@@ -223,10 +223,10 @@ class alignas(128) Strip {
   double progress_time_ = -never;
   Tally tally_;
   Simulation::Bookkeeping bookkeeping_;
-  GrowingArray<DiskName> candidates_;                                // possible partners of a kick
-  Batch batch_{.nobody = {.next_time = never, .partner = no_disk}};  // events that come next, worked out together
-  DrawnKicks drawn_kicks_{};                                         // some that come soon
-  double drawn_until_ = -never;                                      // when the last of them comes
+  GrowingArray<DiskName> candidates_;       // possible partners of a kick
+  Batch batch_{};                           // events that come next, worked out together
+  DrawnKicks drawn_kicks_{};                // some that come soon
+  double drawn_until_ = -never;             // when the last of them comes
   std::uint32_t likely_partners_[16] = {};  // of kicks that come soon, by slot modulo 16; only for what to fetch
 
   Rows core_;                // the disks that stand here are the strip's own
