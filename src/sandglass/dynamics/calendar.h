@@ -80,8 +80,8 @@ class Calendar {
   /// next. `fetch(slot)` does so with what belongs to the disk itself.
   template <class Fetch>
   [[gnu::always_inline]] void fetch_ahead(std::size_t n, const Record* records, Fetch&& fetch) const {
-    prefetch(&records[sorted_[head_ + n + 26].slot]);
-    if (const Entry& later = sorted_[head_ + n + 16]; later.time < nothing) fetch(later.slot);
+    prefetch(&records[sorted_[head_ + n + 8].slot]);
+    if (const Entry& later = sorted_[head_ + n + 4]; later.time < nothing) fetch(later.slot);
   }
 
   /// Some three leads ahead: what comes later for a slot need not be entered yet, it is enough to look again then. Most
