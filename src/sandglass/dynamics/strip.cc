@@ -251,19 +251,22 @@ Kick Strip::next_kick(std::uint32_t i, double t) {
 /// the processor: what the search for their partners reads is brought nearer meanwhile.
 void Strip::draw_kicks(std::uint32_t i, double t) {
   DrawnKicks& drawn = drawn_kicks_;
-  std::uint32_t size = 0;
-  auto add = [&](std::uint32_t slot, double time) {
-    drawn.slot[size] = slot, drawn.id[size] = cold_[slot].id, drawn.count[size] = cold_[slot].kick_count + 1;
-    ++size;
-    drawn_until_ = time;
-    prefetch(neighbours_.list(slot));
-  };
-  add(i, t);
-  for (std::size_t n = 0; n < 32 && size < DrawnKicks::size; ++n) {
+  drawn.slot[0] = i;
+  drawn_until_ = t;
+  std::uint32_t size = 1;
+  for (std::size_t n = 0; n < 24 && size < DrawnKicks::size; ++n) {  // which are kicks cannot be foretold: no branch
     const Calendar::Coming entry = calendar_.coming(n);
-    if (entry.time == never) break;
     const Record& disk = records_[entry.slot];
-    if (disk.next == Next::kick && disk.next_time == entry.time && entry.slot != i) add(entry.slot, entry.time);
+    const bool counts = disk.next == Next::kick & disk.next_time == entry.time & entry.slot != i;
+    drawn.slot[size] = entry.slot;
+    drawn_until_ = counts ? entry.time : drawn_until_;
+    size += counts;
+  }
+  for (std::uint32_t n = size; n < DrawnKicks::size; ++n) drawn.slot[n] = i;
+  for (std::uint32_t n = 0; n < DrawnKicks::size; ++n) {
+    const std::uint32_t slot = drawn.slot[n];
+    drawn.id[n] = cold_[slot].id, drawn.count[n] = cold_[slot].kick_count + 1;
+    prefetch(neighbours_.list(slot));
   }
   drawn.draw(tables_->state.seed);
   for (std::uint32_t n = 0; n < size; ++n)
