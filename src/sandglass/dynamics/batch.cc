@@ -104,14 +104,14 @@ bool Strip::run_batch() {
   }
   const std::uint32_t j = contact ? disk.partner : i;
   const ColdRecord &cold_a = cold_[i], &cold_b = cold_[j];
-  auto fill = [&](unsigned lane, const ColdRecord& cold) SANDGLASS_INLINE {
+  auto fill = [&](unsigned lane, const Record& record, const ColdRecord& cold) SANDGLASS_INLINE {
     batch.centre[lane] = std::bit_cast<std::uint64_t>(cold.centre);
-    batch.leash_squared[lane] = leash_[cold.roomy] * leash_[cold.roomy];
-    special |= static_cast<unsigned>(cold.concerned | (cold.next_kick < never)) << lane;
+    batch.leash_squared[lane] = leash_[record.roomy] * leash_[record.roomy];
+    special |= static_cast<unsigned>(record.concerned | (cold.next_kick < never)) << lane;
     batch.flown_to[lane] = contact ? t : disk.time;
   };
-  fill(m, cold_a);
-  fill(m + Batch::size, cold_b);
+  fill(m, disk, cold_a);
+  fill(m + Batch::size, records_[j], cold_b);
   batch.slot[m + Batch::size] = j;
   batch.contact[m] = contact;
   batch.contact_if_1[m] = contact;
@@ -260,13 +260,13 @@ bool Strip::run_batch() {
     const unsigned lane = batch.lane[n];
     const std::uint32_t i = batch.slot[lane], other = batch.slot[lane ^ Batch::size];
     const Record& disk = records_[i];
-    const std::uint32_t* const list = neighbours_.list(i);
+    const std::uint32_t* const list = neighbours_.more(i);
     unsigned last = disk.neighbour_count;
     if (last > 2 * Batch::listed) [[unlikely]] {
       doubtful |= 1u << lane;
       last = 2 * Batch::listed;
     }
-    for (unsigned k = Batch::listed; k < last; ++k, ++far) {
+    for (unsigned k = 0; k + Batch::listed < last; ++k, ++far) {
       batch.far_slot[far] = list[k] != other ? list[k] : nobody();
       batch.far_lane[far] = lane;
       batch.far_x[far] = batch.x[lane], batch.far_y[far] = batch.y[lane];
@@ -396,7 +396,7 @@ bool Strip::run_batch() {
     ++tally_.contacts[records[i].species + records[j].species];
     tally_.elastic_contacts += batch.elastic[m];
     if (log) [[unlikely]]
-      cold[i].id < cold[j].id ? log_event(EventKind::contact, t, i, j) : log_event(EventKind::contact, t, j, i);
+      ids_[i] < ids_[j] ? log_event(EventKind::contact, t, i, j) : log_event(EventKind::contact, t, j, i);
     settle_batched(i, m);
     settle_batched(j, m + Batch::size);
   }

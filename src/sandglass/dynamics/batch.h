@@ -12,7 +12,7 @@ inline namespace SANDGLASS_ISA {
 /// but one. What is not set for an event or a lane is worked out as well, and means nothing.
 struct Batch {
   static constexpr unsigned size = 8, lanes = 2 * size;
-  static constexpr unsigned listed = 8;  // of each list, those that are searched first
+  static constexpr unsigned listed = ColdRecord::listed_here;  // of each list, those that are searched first
 
   // The events, in order
   unsigned count;

@@ -34,8 +34,8 @@ double Strip::earliest_touch_of_listed(std::uint32_t i) const {
   const Vector time = Vector::all(disk.time), radius = Vector::all(disk.radius), zero = Vector::all(0);
   const Window& window = tables_->window;
   double earliest = never;
-  const std::uint32_t* list = neighbours_.list(i);
-  for (std::uint32_t first = 0; first < disk.neighbour_count; first += Vector::width, list += Vector::width) {
+  for (std::uint32_t first = 0; first < disk.neighbour_count; first += Vector::width) {
+    const std::uint32_t* const list = neighbours_.list_from(i, first);
     Vector other[8];  // columns of the record: x, y, vx, vy, time, next_time, radius
     load_columns(records_, list, other);
     const Mask frozen = (Vector::all(nobodys) < other[5]) & (other[5] < zero);
@@ -60,8 +60,8 @@ template <class Visit>
   const Position at = position_at(ghost, started);
   const Vector x = Vector::all(at.x), y = Vector::all(at.y), start = Vector::all(started), zero = Vector::all(0);
   const Vector radius = Vector::all(ghost.radius), speed = Vector::all(tables_->window.top_speed[ghost.species]);
-  const std::uint32_t* list = neighbours_.list(i);
-  for (std::uint32_t first = 0; first < ghost.neighbour_count; first += Vector::width, list += Vector::width) {
+  for (std::uint32_t first = 0; first < ghost.neighbour_count; first += Vector::width) {
+    const std::uint32_t* const list = neighbours_.list_from(i, first);
     Vector other[8];
     load_columns(records_, list, other);
     const Vector t = max(other[4], start), flight = t - other[4];
@@ -93,17 +93,17 @@ double Strip::earliest_touch(const Record& disk, const Record& ghost) const {
 
 double Strip::earliest_touch_of_listed(std::uint32_t i) const {
   double earliest = never;
-  const std::uint32_t* const list = neighbours_.list(i);
   for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n)
-    if (is_frozen(records_[list[n]])) earliest = std::fmin(earliest, earliest_touch(records_[i], records_[list[n]]));
+    if (const Record& other = records_[neighbours_.listed(i, n)]; is_frozen(other))
+      earliest = std::fmin(earliest, earliest_touch(records_[i], other));
   return earliest;
 }
 
 template <class Visit>
 [[gnu::always_inline]] inline void Strip::visit_touched(std::uint32_t i, Visit&& visit) const {
-  const std::uint32_t* const list = neighbours_.list(i);
   for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n)
-    if (!is_frozen(records_[list[n]])) visit(list[n], earliest_touch(records_[list[n]], records_[i]));
+    if (const std::uint32_t k = neighbours_.listed(i, n); !is_frozen(records_[k]))
+      visit(k, earliest_touch(records_[k], records_[i]));
 }
 
 #endif
@@ -123,7 +123,7 @@ void Strip::freeze(std::uint32_t i, double t) {
   if (disk.partner != no_disk) part(disk.partner);
   const double after = (t - tables_->window.start) * (1 - 1e-6) - 1e-15;  // so that it is not rounded up
   set_next(disk, frozen_after(after > 0 ? after : 0), Next::freeze, no_disk);
-  cold_[i].concerned = true;
+  records_[i].concerned = true;
   left_.push_back({i, row(i)});
   frozen_about_ = true;
   if (!whole_ && tables_->zone(row(i)) != Tables::Zone::near_lane) [[unlikely]] {
@@ -141,15 +141,14 @@ void Strip::freeze(std::uint32_t i, double t) {
 
 /// From now on disk i must look out for frozen ones.
 void Strip::concern(std::uint32_t i) {
-  if (cold_[i].concerned) return;
-  cold_[i].concerned = true;
+  if (records_[i].concerned) return;
+  records_[i].concerned = true;
   concerned_.push_back(i);
 }
 
 void Strip::concern_if_beside_frozen(std::uint32_t i) {
-  const std::uint32_t* const list = neighbours_.list(i);
   for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n)
-    if (is_frozen(records_[list[n]])) return concern(i);
+    if (is_frozen(records_[neighbours_.listed(i, n)])) return concern(i);
 }
 
 void Strip::freeze_no_later(std::uint32_t i, double t) {
@@ -174,7 +173,7 @@ void Strip::freeze_rows(Rows rows) {
   begin_pass();
   neighbours_.grid().visit_rows(rows.first, rows.count, [&](std::uint32_t i) {
     set_next(records_[i], frozen_after(0), Next::freeze, no_disk);
-    cold_[i].concerned = true;
+    records_[i].concerned = true;
     left_.push_back({i, row(i)});
     check_speed(records_[i]);
   });
@@ -193,7 +192,7 @@ void Strip::begin_pass() {
 void Strip::first_pass() {
   auto look_out = [this](std::uint32_t i) {
     concern_if_beside_frozen(i);
-    if (!cold_[i].concerned) return;
+    if (!records_[i].concerned) return;
     const std::uint32_t partner = records_[i].partner;
     if (partner != no_disk && is_frozen(records_[partner])) part(i);
     freeze_no_later(i, freezing_time(i));
@@ -255,7 +254,7 @@ void Strip::later_pass() {
 
 void Strip::end_pass() {
   for (const std::uint32_t i : concerned_)
-    if (!is_frozen(records_[i])) cold_[i].concerned = false;
+    if (!is_frozen(records_[i])) records_[i].concerned = false;
   concerned_.clear();
 }
 

@@ -41,7 +41,7 @@ void Strip::run_window() {
     std::pop_heap(frozen_kicks_.begin(), frozen_kicks_.end());
     frozen_kicks_.pop_back();
     on_frozen_kick(kick);
-    const double wait = Kick::draw_wait(tables_->state.seed, cold_[kick.slot].id, kick.count);
+    const double wait = Kick::draw_wait(tables_->state.seed, ids_[kick.slot], kick.count);
     const double next = kick.time + wait / clock_rate(tables_->state.drive);
     if (next > end) continue;
     frozen_kicks_.push_back({next, kick.count + 1, kick.slot});
@@ -50,11 +50,11 @@ void Strip::run_window() {
 }
 
 void Strip::expect_kick(std::uint32_t frozen_disk) {
-  const ColdRecord& cold = cold_[frozen_disk];
-  if (tables_->state.drive.kind != DriveKind::pair || cold.next_kick > tables_->window.end) return;
-  frozen_kicks_.push_back({cold.next_kick, cold.kick_count + 1, frozen_disk});
+  const double next_kick = cold_[frozen_disk].next_kick;
+  if (tables_->state.drive.kind != DriveKind::pair || next_kick > tables_->window.end) return;
+  frozen_kicks_.push_back({next_kick, kick_counts_[frozen_disk] + 1, frozen_disk});
   std::push_heap(frozen_kicks_.begin(), frozen_kicks_.end());
-  end_ = std::fmin(end_, std::nextafter(cold.next_kick, -never));
+  end_ = std::fmin(end_, std::nextafter(next_kick, -never));
 }
 
 /// Freezes every disk that may be nearest to a frozen one at its kick: those to which the gap may be as small as the
@@ -63,7 +63,6 @@ void Strip::on_frozen_kick(const FrozenKick& kick) {
   const std::uint32_t u = kick.slot;
   const Record& disk = records_[u];
   const double t = kick.time, start = since(records_[u]), grown = growth(u, t);
-  const std::uint32_t* const list = neighbours_.list(u);
   double nearest = never;  // no nearer one has a larger gap
   auto bound = [&](std::uint32_t k) {
     if (k == u || is_done_at(k, t)) return;
@@ -72,7 +71,7 @@ void Strip::on_frozen_kick(const FrozenKick& kick) {
     else
       nearest = std::fmin(nearest, gap_at(u, start, k, t) + grown);
   };
-  for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) bound(list[n]);
+  for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) bound(neighbours_.listed(u, n));
 
   const Grid& grid = neighbours_.grid();
   const auto [x, y] = position_at(disk, start);
@@ -95,7 +94,7 @@ void Strip::on_frozen_kick(const FrozenKick& kick) {
   // Unlisted disks have list centres at least a skin beyond contact from the frozen one's.
   const double unlisted = leash_[false] + tables_->window.way - std::sqrt(dx * dx + dy * dy) - grown;
   if (nearest < unlisted)
-    for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) suspect(list[n]);
+    for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) suspect(neighbours_.listed(u, n));
   else
     grid.visit_near(x, y, nearest + grown + bodies + leash_[true] + 1e-9, suspect);
   for (const std::uint32_t k : suspects_) freeze(k, t);

@@ -36,7 +36,7 @@ Fault IsaEngine::fault_of(std::uint32_t i) {
   const auto [x, y] = position_at(disk, state_.now);
   const double dx = grid.offset(cold.centre.x, x), dy = grid.offset(cold.centre.y, y);
   // The grid rounds positions, in a large box by more than anything else; the leash leaves room for that.
-  if (std::sqrt(dx * dx + dy * dy) > tables_.leash[cold.roomy] + 1e-9 + 4 * grid.unit()) return Fault::astray;
+  if (std::sqrt(dx * dx + dy * dy) > tables_.leash[disk.roomy] + 1e-9 + 4 * grid.unit()) return Fault::astray;
   return Fault::none;
 }
 
@@ -45,14 +45,14 @@ Inspection IsaEngine::inspect() {
   neighbours.refresh();
   Inspection result;
   auto found = [&](Fault fault, std::uint32_t i, std::uint32_t k) {
-    return Inspection{fault, tables_.cold[i].id, k < tables_.size ? tables_.cold[k].id : no_disk, {}, {}, {}};
+    return Inspection{fault, tables_.ids[i], k < tables_.size ? tables_.ids[k] : no_disk, {}, {}, {}};
   };
   for (std::uint32_t i = 0; i < tables_.size; ++i) {
     const Record& disk = tables_.records[i];
     if (const Fault fault = fault_of(i); fault != Fault::none) return found(fault, i, disk.partner);
     if (!neighbours.complete(i, tables_.cold[i].centre, disk)) return found(Fault::wrong_list, i, no_disk);
     for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) {
-      const std::uint32_t k = neighbours.list(i)[n];
+      const std::uint32_t k = neighbours.listed(i, n);
       const double contact = disk.radius + tables_.records[k].radius;
       if (surface_gap(disk, tables_.records[k], contact, state_.now, tables_.box) < -1e-9 * contact)
         return found(Fault::overlap, i, k);

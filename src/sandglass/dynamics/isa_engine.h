@@ -66,10 +66,15 @@ class IsaEngine final : public Engine {
   double window_part_ = 0;            // how far the fastest disk may fly in a window, in skins
   double top_speed_[species_count] = {0, 0};
   std::uint32_t longest_list_ = 0;
-  double caution_ = 1;          // grows with every window that had to be undone since a disk was too fast
-  double freezing_depth_ = 0;   // how far from the lanes disks are frozen; grows where that is not enough
-  Array<Record> kept_records_;  // the disks some windows ago
-  Array<ColdRecord> kept_cold_;
+  double caution_ = 1;         // grows with every window that had to be undone since a disk was too fast
+  double freezing_depth_ = 0;  // how far from the lanes disks are frozen; grows where that is not enough
+  struct KeptDisk {
+    Record record;
+    double last_contact, next_kick;
+    std::uint64_t kick_count;
+    std::int32_t image_x, image_y;
+  };
+  Array<KeptDisk> kept_;  // the disks some windows ago
   Tally kept_tally_;
   double kept_now_ = 0;
   unsigned windows_since_kept_ = 0, windows_between_copies_ = 1;

@@ -12,23 +12,24 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
   if (tables_.cold.size() != size) {
     tables_.records = Array<Record>(size + 1);
     tables_.cold = Array<ColdRecord>(size);
+    tables_.ids = Array<std::uint32_t>(size);
+    tables_.kick_counts = Array<std::uint64_t>(size);
     // Fills the empty places of neighbour lists: every contact would come after what it has next.
-    tables_.records[size] = {0, 0, 0, 0, 0, nobodys, 0, no_disk, Next::review, small, 0};
+    tables_.records[size] = {0, 0, 0, 0, 0, nobodys, 0, no_disk, Next::review, small, false, true, 0};
   }
   for (std::uint32_t i = 0; i < size; ++i) {
     const Disk& disk = state_.disks[order[i]];
     tables_.records[i] = {
         disk.x,  disk.y,       disk.vx,      disk.vy, disk.time, never, state_.mixture.radius[disk.species],
-        no_disk, Next::review, disk.species, 0};
-    tables_.cold[i] = {.centre = {},
+        no_disk, Next::review, disk.species, false,   true,      0};
+    tables_.cold[i] = {.listed = {},
+                       .centre = {},
                        .last_contact = disk.last_contact,
                        .next_kick = disk.next_kick,
-                       .kick_count = disk.kick_count,
                        .image_x = disk.image_x,
-                       .image_y = disk.image_y,
-                       .id = order[i],
-                       .concerned = false,
-                       .roomy = true};
+                       .image_y = disk.image_y};
+    tables_.ids[i] = order[i];
+    tables_.kick_counts[i] = disk.kick_count;
   }
   state_.disks = std::vector<Disk>();  // gives the memory back
   windows_done_ = undone_ = 0;
@@ -51,7 +52,7 @@ bool IsaEngine::works_in_batches() const {
 /// Lists and predictions for the records as they are. Returns the deepest overlap beyond rounding, if any.
 OverlappingPair IsaEngine::make_lists() {
   Array<Record>& records = tables_.records;
-  tables_.neighbours = NeighbourTable(tables_.size, tables_.box, state_.mixture, default_skin(), default_cell_size());
+  tables_.neighbours = NeighbourTable(tables_.cold, tables_.box, state_.mixture, default_skin(), default_cell_size());
   const Neighbours neighbours(tables_.neighbours);
   strips_ = strips_for_threads(neighbours);
   tables_.leash[true] = neighbours.leash();
@@ -66,17 +67,17 @@ OverlappingPair IsaEngine::make_lists() {
     Flight now(records[i]);
     std::int32_t image_x = 0, image_y = 0;
     advance(now, image_x, image_y, state_.now, tables_.box);
-    tables_.cold[i].concerned = false;
+    records[i].concerned = false;
     whole_.set_centre(i, whole_.neighbours().grid().point(now.x, now.y));
   }
   OverlappingPair deepest;
   for (std::uint32_t i = 0; i < tables_.size; ++i) {
     whole_.enter_list(i);
     for (std::uint32_t n = 0; n < records[i].neighbour_count; ++n) {
-      const std::uint32_t k = whole_.neighbours().list(i)[n];
+      const std::uint32_t k = whole_.neighbours().listed(i, n);
       const double contact = records[i].radius + records[k].radius;
       const double gap = surface_gap(records[i], records[k], contact, state_.now, tables_.box);
-      if (gap < -1e-9 * contact && -gap > deepest.depth) deepest = {tables_.cold[k].id, tables_.cold[i].id, -gap};
+      if (gap < -1e-9 * contact && -gap > deepest.depth) deepest = {tables_.ids[k], tables_.ids[i], -gap};
     }
   }
   // First predictions into a calendar where nearly all is far ahead, only to learn how far that is.
@@ -144,15 +145,14 @@ void IsaEngine::forget_what_comes() {
   whole_ = Strip();
   first_.reset();
   shifted_.reset();
-  kept_records_ = {};
-  kept_cold_ = {};
+  kept_ = {};
 }
 
 void IsaEngine::store(Disk* disks) const {
   for (std::size_t i = 0; i < tables_.size; ++i) {
     const Record& record = tables_.records[i];
     const ColdRecord& cold = tables_.cold[i];
-    Disk& disk = disks[cold.id];
+    Disk& disk = disks[tables_.ids[i]];
     disk.x = record.x;
     disk.y = record.y;
     disk.vx = record.vx;
@@ -160,7 +160,7 @@ void IsaEngine::store(Disk* disks) const {
     disk.time = record.time;
     disk.last_contact = cold.last_contact;
     disk.next_kick = cold.next_kick;
-    disk.kick_count = cold.kick_count;
+    disk.kick_count = tables_.kick_counts[i];
     disk.image_x = cold.image_x;
     disk.image_y = cold.image_y;
     disk.species = record.species;
@@ -171,11 +171,12 @@ void IsaEngine::make_frame(double* x, double* y, double* vx, double* vy) const {
   for (std::size_t i = 0; i < tables_.size; ++i) {
     const Record& record = tables_.records[i];
     const ColdRecord& cold = tables_.cold[i];
+    const std::uint32_t id = tables_.ids[i];
     const double flight = state_.now - record.time;
-    x[cold.id] = record.x + record.vx * flight + cold.image_x * tables_.box.length;
-    y[cold.id] = record.y + record.vy * flight + cold.image_y * tables_.box.length;
-    vx[cold.id] = record.vx;
-    vy[cold.id] = record.vy;
+    x[id] = record.x + record.vx * flight + cold.image_x * tables_.box.length;
+    y[id] = record.y + record.vy * flight + cold.image_y * tables_.box.length;
+    vx[id] = record.vx;
+    vy[id] = record.vy;
   }
 }
 

@@ -16,20 +16,28 @@ inline namespace SANDGLASS_ISA {
 struct NeighbourTable {
   /// Lists are read by whole blocks: from their end to the end of the block they hold the slot `size`, of which the
   /// engine keeps a record that nothing ever touches.
-  static constexpr std::uint32_t block = 8;
+  static constexpr std::uint32_t block = ColdRecord::listed_here;
 
   NeighbourTable() = default;
-  NeighbourTable(std::size_t size, const Box& box, const Mixture& mixture_, double skin_, double cell_size)
-      : mixture(mixture_), skin(skin_), nobody(static_cast<std::uint32_t>(size)), grid(box.length, cell_size) {
-    lists = Array<std::uint32_t>(size * stride);
-    for (std::uint32_t& entry : lists) entry = nobody;
+  /// Empty lists for all of `cold_`.
+  NeighbourTable(Array<ColdRecord>& cold_, const Box& box, const Mixture& mixture_, double skin_, double cell_size)
+      : mixture(mixture_),
+        skin(skin_),
+        nobody(static_cast<std::uint32_t>(cold_.size())),
+        cold(cold_.begin()),
+        more(cold_.size() * stride),
+        grid(box.length, cell_size) {
+    for (ColdRecord& disk : cold_)
+      for (std::uint32_t& entry : disk.listed) entry = nobody;
+    for (std::uint32_t& entry : more) entry = nobody;
   }
 
   Mixture mixture;
   double skin = 0;
   std::uint32_t nobody = 0;
-  std::uint32_t stride = 2 * block;  // room in each list
-  Array<std::uint32_t> lists;
+  std::uint32_t stride = block;  // room for each list beyond its first block
+  ColdRecord* cold = nullptr;    // has the first block
+  Array<std::uint32_t> more;
   GridTable grid;
 };
 
@@ -49,7 +57,8 @@ class Neighbours {
         nobody_(table.nobody),
         stride_(table.stride),
         table_(&table),
-        lists_(table.lists.begin()) {}
+        cold_(table.cold),
+        more_(table.more.begin()) {}
 
   [[nodiscard]] const Grid& grid() const { return grid_; }
   [[nodiscard]] Grid& grid() { return grid_; }
@@ -62,7 +71,7 @@ class Neighbours {
   /// The tables may have moved.
   void refresh() {
     grid_.refresh();
-    lists_ = table_->lists.begin();
+    more_ = table_->more.begin();
     stride_ = table_->stride;
   }
 
@@ -72,9 +81,18 @@ class Neighbours {
     return skin_ / 2 - 1e-9 - 4 * grid_.unit() - 1e-6 * widest;
   }
 
-  [[gnu::always_inline]] const std::uint32_t* list(std::uint32_t slot) const {
-    return &lists_[std::size_t{slot} * stride_];
+  /// The first block of the list of a disk.
+  [[gnu::always_inline]] const std::uint32_t* list(std::uint32_t slot) const { return cold_[slot].listed; }
+  /// What lies beyond the first block.
+  [[gnu::always_inline]] const std::uint32_t* more(std::uint32_t slot) const {
+    return &more_[std::size_t{slot} * stride_];
   }
+  /// From entry `first` on to the end of its block.
+  [[gnu::always_inline]] const std::uint32_t* list_from(std::uint32_t slot, std::uint32_t first) const {
+    return first < block ? list(slot) + first : more(slot) + (first - block);
+  }
+  /// Entry n.
+  [[nodiscard]] std::uint32_t listed(std::uint32_t slot, std::uint32_t n) const { return *list_from(slot, n); }
 
   /// Gives a disk that has none a list around the centre `at`.
   void enter(std::uint32_t slot, FixedPoint at, Record* records) {
@@ -97,23 +115,24 @@ class Neighbours {
       grid_.place(slot, old, records[slot].species);
       return false;
     }
-    while (found.count > stride_) [[unlikely]] widen();
+    while (found.count > room()) [[unlikely]] widen();
     if (before + found.count > changes_.size()) [[unlikely]]
       changes_ = Array<std::uint32_t>(2 * (before + found.count));
     // Most stay. Who comes or goes is gathered first, without branches, since they cannot be foretold.
-    std::uint32_t* const mine = &lists_[std::size_t{slot} * stride_];
     std::uint32_t came = 0, gone = 0;
     for (std::uint32_t n = 0; n < found.count; ++n) {
       changes_[came] = found.first[n];
-      came += !holds(mine, before, found.first[n]);
+      came += !lists(slot, before, found.first[n]);
     }
     std::uint32_t* const goers = &changes_[came];
     for (std::uint32_t n = 0; n < before; ++n) {
-      goers[gone] = mine[n];
-      gone += !holds(found.first, found.count, mine[n]);
+      goers[gone] = listed(slot, n);
+      gone += !holds(found.first, found.count, goers[gone]);
     }
     for (std::uint32_t n = 0; n < came + gone; ++n) prefetch(list(changes_[n]));
-    for (std::uint32_t n = 0; n < stride_; ++n) mine[n] = n < found.count ? found.first[n] : nobody_;
+    for (std::uint32_t n = 0; n < block; ++n) entry(slot, n) = n < found.count ? found.first[n] : nobody_;
+    const std::uint32_t longest = before > found.count ? before : found.count;
+    for (std::uint32_t n = block; n < longest; ++n) entry(slot, n) = n < found.count ? found.first[n] : nobody_;
     records[slot].neighbour_count = static_cast<std::uint16_t>(found.count);
     for (std::uint32_t n = 0; n < gone; ++n) remove(goers[n], slot, records);
     for (std::uint32_t n = 0; n < came; ++n) add(changes_[n], slot, records);
@@ -125,16 +144,16 @@ class Neighbours {
   /// nobody else.
   [[nodiscard]] bool complete(std::uint32_t slot, FixedPoint at, const Record& disk) {
     const Grid::Slots found = find(at, disk);  // the disk itself is among them
-    if (found.count != disk.neighbour_count + 1u || found.count > stride_ + 1) return false;
+    if (found.count != disk.neighbour_count + 1u || found.count > room() + 1) return false;
     for (std::uint32_t n = 0; n < found.count; ++n)
-      if (found.first[n] != slot && !holds(list(slot), disk.neighbour_count, found.first[n])) return false;
+      if (found.first[n] != slot && !lists(slot, disk.neighbour_count, found.first[n])) return false;
     return true;
   }
 
   /// Sees to it that a list may have so many entries. Other Neighbours must be told (refresh).
   void make_room(std::uint32_t entries) {
     refresh();
-    while (entries > stride_) widen();
+    while (entries > room()) widen();
   }
 
   /// Brings what renew will read nearer to the processor.
@@ -149,48 +168,66 @@ class Neighbours {
     return grid_.within(at, {range(disk.radius, small), range(disk.radius, big)});
   }
 
+  [[nodiscard]] std::uint32_t room() const { return block + stride_; }
+
+  [[gnu::always_inline]] std::uint32_t& entry(std::uint32_t slot, std::uint32_t n) {
+    return n < block ? cold_[slot].listed[n] : more_[std::size_t{slot} * stride_ + (n - block)];
+  }
+
+  /// Which of the first `count` entries of a block, or of all, equal `slot`.
+  [[gnu::always_inline]] static unsigned lanes_of(const std::uint32_t* entries, std::uint32_t count,
+                                                  std::uint32_t slot) {
+    return equal_lanes(entries, slot) & ((1u << (count < block ? count : block)) - 1);
+  }
+
   /// Whether `slot` is among the first `count` entries, which are read by whole blocks.
   [[gnu::always_inline]] static bool holds(const std::uint32_t* entries, std::uint32_t count, std::uint32_t slot) {
-    unsigned lanes = equal_lanes(entries, slot) & ((1u << (count < block ? count : block)) - 1);
+    unsigned lanes = lanes_of(entries, count, slot);
     for (std::uint32_t first = block; first < count; first += block)
-      lanes |= equal_lanes(entries + first, slot) & ((1u << (count - first < block ? count - first : block)) - 1);
+      lanes |= lanes_of(entries + first, count - first, slot);
+    return lanes != 0;
+  }
+
+  /// Whether the list of a disk, of `count` entries, names `other`.
+  [[gnu::always_inline]] bool lists(std::uint32_t slot, std::uint32_t count, std::uint32_t other) const {
+    unsigned lanes = lanes_of(list(slot), count, other);
+    for (std::uint32_t first = block; first < count; first += block)
+      lanes |= lanes_of(list_from(slot, first), count - first, other);
     return lanes != 0;
   }
 
   /// Whether the tables have room for a list of `found`, whoever of them may be new.
   [[nodiscard]] bool have_room(const Grid::Slots& found, const Record* records) const {
-    bool room = found.count <= stride_ && grid_.spare_lines() > 0;
-    for (std::uint32_t n = 0; n < found.count; ++n) room &= records[found.first[n]].neighbour_count < stride_;
-    return room;
+    bool enough = found.count <= room() && grid_.spare_lines() > 0;
+    for (std::uint32_t n = 0; n < found.count; ++n) enough &= records[found.first[n]].neighbour_count < room();
+    return enough;
   }
 
   void add(std::uint32_t slot, std::uint32_t other, Record* records) {
     std::uint16_t& count = records[slot].neighbour_count;
-    if (count == stride_) [[unlikely]]
+    if (count == room()) [[unlikely]]
       widen();
-    lists_[std::size_t{slot} * stride_ + count++] = other;
+    entry(slot, count++) = other;
   }
 
   void remove(std::uint32_t slot, std::uint32_t other, Record* records) {
-    std::uint32_t* const neighbours = &lists_[std::size_t{slot} * stride_];
     const std::uint32_t last = --records[slot].neighbour_count;
-    std::uint32_t place = 0;
-    unsigned lanes = equal_lanes(neighbours, other);
-    while (lanes == 0) lanes = equal_lanes(neighbours + (place += block), other);
-    place += static_cast<std::uint32_t>(__builtin_ctz(lanes));
-    neighbours[place] = neighbours[last];
-    neighbours[last] = nobody_;
+    std::uint32_t first = 0;
+    unsigned lanes = equal_lanes(list(slot), other);
+    while (lanes == 0) lanes = equal_lanes(list_from(slot, first += block), other);
+    entry(slot, first + static_cast<std::uint32_t>(__builtin_ctz(lanes))) = listed(slot, last);
+    entry(slot, last) = nobody_;
   }
 
   // A list is full (a big disk among small ones): give every list more room.
   [[gnu::noinline]] void widen() {
     const std::uint32_t wider = stride_ + block;
-    const std::size_t size = table_->lists.size() / stride_;
-    Array<std::uint32_t> lists(size * wider);
+    const std::size_t size = table_->more.size() / stride_;
+    Array<std::uint32_t> more(size * wider);
     for (std::size_t slot = 0; slot < size; ++slot)
       for (std::uint32_t i = 0; i < wider; ++i)
-        lists[slot * wider + i] = i < stride_ ? lists_[slot * stride_ + i] : nobody_;
-    table_->lists = std::move(lists);
+        more[slot * wider + i] = i < stride_ ? more_[slot * stride_ + i] : nobody_;
+    table_->more = std::move(more);
     table_->stride = wider;
     refresh();
   }
@@ -199,9 +236,10 @@ class Neighbours {
   Grid grid_;
   double skin_ = 0;
   std::uint32_t nobody_ = 0;
-  std::uint32_t stride_ = 2 * block;
+  std::uint32_t stride_ = block;
   NeighbourTable* table_ = nullptr;
-  std::uint32_t* lists_ = nullptr;
+  ColdRecord* cold_ = nullptr;
+  std::uint32_t* more_ = nullptr;
   Array<std::uint32_t> changes_ = Array<std::uint32_t>(64);
 };
 

@@ -13,7 +13,8 @@ inline namespace SANDGLASS_ISA {
 void renew(benchmark::State& state, const State& here, const State& there, double skin) {
   const auto size = static_cast<std::uint32_t>(here.disks.size());
   const double cell_size = here.box_length * std::sqrt(2.0 / size);  // as in the engine
-  NeighbourTable table(size, Box(here.box_length, here.mixture), here.mixture, skin, cell_size);
+  Array<ColdRecord> cold(size);
+  NeighbourTable table(cold, Box(here.box_length, here.mixture), here.mixture, skin, cell_size);
   Neighbours neighbours(table);
   Array<Record> records(size);
   Array<FixedPoint> centres[2] = {Array<FixedPoint>(size), Array<FixedPoint>(size)};

@@ -45,7 +45,7 @@ bool Strip::nobody_unlisted_within(double gap, std::uint32_t i, double t) const 
   const auto [x, y] = position_at(records_[i], t);
   const Grid& grid = neighbours_.grid();
   const double dx = grid.offset(cold_[i].centre.x, x), dy = grid.offset(cold_[i].centre.y, y);
-  return gap < leash_[cold_[i].roomy] - std::sqrt(dx * dx + dy * dy);
+  return gap < leash_[records_[i].roomy] - std::sqrt(dx * dx + dy * dy);
 }
 
 /// The disk with the smallest gap of surfaces to disk i at time t; the smaller id at equal gaps. In a window: among
@@ -61,22 +61,22 @@ std::uint32_t Strip::nearest_partner(std::uint32_t i, double t) {
       return;
     }
     const double gap = surface_gap(disk, records_[k], disk.radius + records_[k].radius, t, box_);
-    if (gap < best_gap || (gap == best_gap && best != no_disk && cold_[k].id < cold_[best].id)) {
+    if (gap < best_gap || (gap == best_gap && best != no_disk && ids_[k] < ids_[best])) {
       best_gap = gap;
       best = k;
     }
   };
   auto visit_listed = [&](std::uint32_t first, std::uint32_t last) {
-    for (const std::uint32_t* k = neighbours_.list(i) + first; first < last; ++first, ++k) visit(*k);
+    for (; first < last; ++first) visit(neighbours_.listed(i, first));
   };
 #ifdef SANDGLASS_SIMD
-  const std::uint32_t* const list = neighbours_.list(i);
-  const bool no_frozen_one_listed = !cold_[i].concerned;
+  const bool no_frozen_one_listed = !disk.concerned;
   for (std::uint32_t first = 0; no_frozen_one_listed && first < disk.neighbour_count; first += Vector::width) {
-    const auto [gap, lanes] = smallest_gap(disk, list + first, t);
+    const std::uint32_t* const list = neighbours_.list_from(i, first);
+    const auto [gap, lanes] = smallest_gap(disk, list, t);
     if (gap > best_gap) continue;
     if (gap < best_gap && (lanes & (lanes - 1)) == 0) [[likely]]
-      best_gap = gap, best = list[first + static_cast<unsigned>(__builtin_ctz(lanes))];
+      best_gap = gap, best = list[static_cast<unsigned>(__builtin_ctz(lanes))];
     else  // ties are for the rule
       visit_listed(first, std::min<std::uint32_t>(first + Vector::width, disk.neighbour_count));
   }
@@ -109,7 +109,7 @@ std::uint32_t Strip::partner_within_reach(std::uint32_t i, double t, const Kick&
   auto visit = [&](std::uint32_t k) {
     if (k == i) return;
     if (!within_reach(disk, records_[k], disk.radius + records_[k].radius, tables_->state.drive.reach, t, box_)) return;
-    candidates_.push_back({cold_[k].id, k});
+    candidates_.push_back({ids_[k], k});
   };
   const auto [x, y] = position_at(disk, t);
   const double radius = tables_->state.drive.reach * (disk.radius + largest_radius()) + leash_[true] + 1e-9;

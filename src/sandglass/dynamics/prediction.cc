@@ -47,19 +47,18 @@ void Strip::part(std::uint32_t i) {
 /// come before anything else at the same time, and among contacts of one disk that with the smaller id comes first.
 bool Strip::comes_before_next_of(const Record& other, double t, std::uint32_t i) const {
   if (t != other.next_time) return t < other.next_time;
-  return other.partner == no_disk || other.partner == i || cold_[i].id < cold_[other.partner].id;
+  return other.partner == no_disk || other.partner == i || ids_[i] < ids_[other.partner];
 }
 
 /// By the rule, one by one.
 Strip::Foreseen Strip::earliest_contact_by_rule(std::uint32_t i) const {
   Foreseen earliest{never, no_disk};
   const Record& disk = records_[i];
-  const std::uint32_t* const list = neighbours_.list(i);
   for (std::uint32_t n = 0; n < disk.neighbour_count; ++n) {
-    const std::uint32_t k = list[n];
+    const std::uint32_t k = neighbours_.listed(i, n);
     const double t = contact_time(disk, records_[k], disk.radius + records_[k].radius, box_);
     if (t > earliest.time || t == never || !comes_before_next_of(records_[k], t, i)) continue;
-    if (t == earliest.time && cold_[earliest.partner].id < cold_[k].id) continue;
+    if (t == earliest.time && ids_[earliest.partner] < ids_[k]) continue;
     earliest = {t, k};
   }
   return earliest;
@@ -118,7 +117,7 @@ Strip::Lanes Strip::first_contacts(std::uint32_t i, const Flight& flight, std::u
     }
     first += Vector::width;
     if (first >= disk.neighbour_count) return earliest;
-    list += Vector::width;
+    list = neighbours_.list_from(i, first);
     lanes = contacts_of_block(Flight(disk), disk.radius, list, [](Vector(&)[8]) { return everywhere(); });
   }
 }
@@ -147,7 +146,7 @@ Strip::Foreseen Strip::earliest_contact(std::uint32_t i) const {
     if (time < t) t = time, next = what;
   };
   consider(cold.next_kick, Next::kick);
-  if (cold.concerned) [[unlikely]]
+  if (disk.concerned) [[unlikely]]
     consider(freezing_time(i), Next::freeze);
   // Expiry and transit cost a root and divisions; most often it is plain that they do not come first.
   if (!within_leash(disk, cold, t)) consider(std::fmin(list_expiry(disk, cold), calendar_.horizon(i)), Next::review);
@@ -174,7 +173,7 @@ bool Strip::within_leash(const Record& disk, const ColdRecord& cold, double t) c
   const double flight = t - disk.time;
   const double dx = grid.offset(cold.centre.x, disk.x) + disk.vx * flight;
   const double dy = grid.offset(cold.centre.y, disk.y) + disk.vy * flight;
-  return dx * dx + dy * dy < 0.999 * leash_[cold.roomy] * leash_[cold.roomy];
+  return dx * dx + dy * dy < 0.999 * leash_[disk.roomy] * leash_[disk.roomy];
 }
 
 /// When the disk, flying freely, leaves the circle of its leash: the later root, since its record may be older than its
@@ -185,7 +184,7 @@ double Strip::list_expiry(const Record& disk, const ColdRecord& cold) const {
   const double vv = disk.vx * disk.vx + disk.vy * disk.vy;
   if (vv == 0) return never;
   const double dv = dx * disk.vx + dy * disk.vy;
-  const double leash = leash_[cold.roomy];
+  const double leash = leash_[disk.roomy];
   const double square = dv * dv + vv * (leash * leash - dx * dx - dy * dy);
   return disk.time + (std::sqrt(square > 0 ? square : 0) - dv) / vv;
 }

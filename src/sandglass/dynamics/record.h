@@ -1,4 +1,4 @@
-// How the engine keeps a disk: one cache line that every prediction reads, and a record that only its own events touch.
+// How the engine keeps a disk: one cache line that every prediction reads, and one that only its own events touch.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,9 @@ struct alignas(64) Record {
   double radius;
   std::uint32_t partner;  ///< slot of the disk that `next` (a contact) names, else no_disk
   Next next;
-  Species species;
+  Species species : 4;
+  bool concerned : 1;  ///< in this window the disk is frozen, or must look out for frozen ones
+  bool roomy : 1;      ///< which leash it is on, see Tables
   std::uint16_t neighbour_count;
 };
 static_assert(sizeof(Record) == 64);
@@ -63,16 +65,14 @@ struct Flight {
 inline constexpr double nobodys = -std::numeric_limits<double>::infinity();
 
 /// The cold half.
-struct ColdRecord {
-  FixedPoint centre;  ///< where the disk stood when its list was made
+struct alignas(64) ColdRecord {
+  static constexpr std::uint32_t listed_here = 8;
+  std::uint32_t listed[listed_here];  ///< slots of its neighbours; the rest of a longer list is elsewhere (Neighbours)
+  FixedPoint centre;                  ///< where the disk stood when its list was made
   double last_contact, next_kick;
-  std::uint64_t kick_count;
   std::int32_t image_x, image_y;
-  std::uint32_t id;
-  bool concerned;  ///< in this window the disk is frozen, or must look out for frozen ones
-  bool roomy;      ///< which leash it is on, see Tables
 };
-static_assert(sizeof(ColdRecord) == 48);
+static_assert(sizeof(ColdRecord) == 64);
 
 }  // namespace SANDGLASS_ISA
 }  // namespace sandglass

@@ -20,6 +20,8 @@ Strip::Strip(Tables& tables)
     : tables_(&tables),
       records_(tables.records.begin()),
       cold_(tables.cold.begin()),
+      ids_(tables.ids.begin()),
+      kick_counts_(tables.kick_counts.begin()),
       box_(tables.box),
       law_(tables.state.collision),
       leash_{tables.leash[false], tables.leash[true]},
@@ -109,21 +111,19 @@ void Strip::hand_in(Tally& tally, Simulation::Bookkeeping& bookkeeping) {
   }
 }
 
-/// Its list and cold record, and its partner's.
+/// Its cold record with the list, and its partner's.
 void Strip::fetch_disks(std::uint32_t i) const {
   const std::uint32_t partner = records_[i].partner;
   fetch_disk(i);
   fetch_disk(partner == no_disk ? i : partner);
 }
 
-void Strip::fetch_disk(std::uint32_t i) const {
-  prefetch(neighbours_.list(i));
-  prefetch(&cold_[i]);
-}
+void Strip::fetch_disk(std::uint32_t i) const { prefetch(&cold_[i]); }
 
 void Strip::fetch_listed(std::uint32_t i) const {
   const std::uint32_t* list = neighbours_.list(i);
   for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
+  prefetch(records_[i].neighbour_count > Neighbours::block ? neighbours_.more(i) : list);
 }
 
 /// Through the lists, the neighbours; where its list expires the grid.
@@ -198,7 +198,7 @@ void Strip::check_progress(double t) {
   tally_.virial.add(impact.virial);
   tally_.dissipated.add(impact.dissipated);
   if (log) [[unlikely]]
-    cold_a.id < cold_b.id ? log_event(EventKind::contact, a.time, i, j) : log_event(EventKind::contact, a.time, j, i);
+    ids_[i] < ids_[j] ? log_event(EventKind::contact, a.time, i, j) : log_event(EventKind::contact, a.time, j, i);
 }
 
 /// The searches for what comes next begin before the new flights are written: they need not wait for that, nor for each
@@ -221,7 +221,7 @@ void Strip::on_kick(std::uint32_t i, double t) {
     j = drive.partner == PartnerRule::within ? partner_within_reach(i, t, kick) : nearest_partner(i, t);
     if (j == undecided) return freeze(i, t);
   }
-  ++cold.kick_count;
+  ++kick_counts_[i];
   cold.next_kick = t + kick.wait / clock_rate(drive);
   enter_next_kick(i);
   if (log) [[unlikely]]
@@ -238,13 +238,13 @@ void Strip::on_kick(std::uint32_t i, double t) {
 
 /// The next kick of disk i, which comes at time t. Most often it has been drawn already.
 Kick Strip::next_kick(std::uint32_t i, double t) {
-  const std::uint64_t count = cold_[i].kick_count + 1;
+  const std::uint64_t count = kick_counts_[i] + 1;
   if (t > drawn_until_) draw_kicks(i, t);
   const unsigned lanes = equal_lanes(drawn_kicks_.slot, i);
   const auto n = static_cast<unsigned>(__builtin_ctz(lanes | 1u << 31)) % DrawnKicks::size;
   if (lanes != 0 && drawn_kicks_.count[n] == count) [[likely]]
     return drawn_kicks_.kick(n);
-  return Kick::draw(tables_->state.seed, cold_[i].id, count);
+  return Kick::draw(tables_->state.seed, ids_[i], count);
 }
 
 /// Draws the kick of disk i, which comes at time t, and those that the calendar has next. These come as a surprise to
@@ -265,7 +265,7 @@ void Strip::draw_kicks(std::uint32_t i, double t) {
   for (std::uint32_t n = size; n < DrawnKicks::size; ++n) drawn.slot[n] = i;
   for (std::uint32_t n = 0; n < DrawnKicks::size; ++n) {
     const std::uint32_t slot = drawn.slot[n];
-    drawn.id[n] = cold_[slot].id, drawn.count[n] = cold_[slot].kick_count + 1;
+    drawn.id[n] = ids_[slot], drawn.count[n] = kick_counts_[slot] + 1;
     prefetch(neighbours_.list(slot));
   }
   drawn.draw(tables_->state.seed);
@@ -358,15 +358,15 @@ bool Strip::before(std::uint32_t a, std::uint32_t b) const {
   auto kind = [](Next next) { return next == Next::contact_entered_by_partner ? Next::contact : next; };
   if (kind(disk_a.next) != kind(disk_b.next)) return disk_a.next < disk_b.next;
   auto ids = [&](std::uint32_t slot, const Record& disk) {
-    const std::uint64_t own = cold_[slot].id;
-    const std::uint64_t other = disk.partner == no_disk ? no_disk : cold_[disk.partner].id;
+    const std::uint64_t own = ids_[slot];
+    const std::uint64_t other = disk.partner == no_disk ? no_disk : ids_[disk.partner];
     return own < other ? own << 32 | other : other << 32 | own;
   };
   return ids(a, disk_a) < ids(b, disk_b);
 }
 
 void Strip::log_event(EventKind kind, double t, std::uint32_t i, std::uint32_t j) const {
-  append_event(*log, {t, kind, cold_[i].id, j == no_disk ? no_disk : cold_[j].id});
+  append_event(*log, {t, kind, ids_[i], j == no_disk ? no_disk : ids_[j]});
 }
 
 }  // namespace SANDGLASS_ISA

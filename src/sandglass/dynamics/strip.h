@@ -46,7 +46,7 @@ class alignas(128) Strip {
   /// Where a disk's list is to be made.
   void set_centre(std::uint32_t i, FixedPoint centre) {
     cold_[i].centre = centre;
-    cold_[i].roomy = tables_->zone(neighbours_.grid().row_of(centre)) == Tables::Zone::roomy;
+    records_[i].roomy = tables_->zone(neighbours_.grid().row_of(centre)) == Tables::Zone::roomy;
   }
   void set_calendar(Calendar calendar) { calendar_ = std::move(calendar); }
   void enter_calendar(std::uint32_t i);
@@ -199,7 +199,7 @@ class alignas(128) Strip {
   [[nodiscard]] double gap_at(std::uint32_t i, double t, std::uint32_t k, double t_k) const;
   [[nodiscard]] bool is_done_at(std::uint32_t k, double t) const;
   [[nodiscard]] double growth(std::uint32_t frozen_disk, double t) const;
-  [[nodiscard]] bool is_done(std::uint32_t i) const { return !first_pass_ && !cold_[i].concerned; }
+  [[nodiscard]] bool is_done(std::uint32_t i) const { return !first_pass_ && !records_[i].concerned; }
   [[nodiscard]] std::uint32_t row(std::uint32_t i) const { return neighbours_.grid().row_of(cold_[i].centre); }
 
   [[nodiscard]] bool before(std::uint32_t a, std::uint32_t b) const;
@@ -210,6 +210,8 @@ class alignas(128) Strip {
   const Tables* tables_ = nullptr;
   Record* records_ = nullptr;
   ColdRecord* cold_ = nullptr;
+  const std::uint32_t* ids_ = nullptr;
+  std::uint64_t* kick_counts_ = nullptr;
   Box box_{1, {}};
   PairMasses masses_[species_count][species_count];
   CollisionLaw law_;

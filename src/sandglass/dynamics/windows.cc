@@ -233,14 +233,12 @@ void IsaEngine::survey() {
 void IsaEngine::keep() {
   survey();
   const std::size_t size = tables_.size, threads = strips_;
-  if (kept_records_.size() != size) {
-    kept_records_ = Array<Record>(size);
-    kept_cold_ = Array<ColdRecord>(size);
-  }
+  if (kept_.size() != size) kept_ = Array<KeptDisk>(size);
   crew->work(strips_, [&](unsigned s) {
     for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i) {
-      kept_records_[i] = tables_.records[i];
-      kept_cold_[i] = tables_.cold[i];
+      const ColdRecord& cold = tables_.cold[i];
+      kept_[i] = {tables_.records[i],     cold.last_contact, cold.next_kick,
+                  tables_.kick_counts[i], cold.image_x,      cold.image_y};
     }
     first_[s].remake_calendar();
     shifted_[s].clear_outbox();
@@ -266,8 +264,12 @@ void IsaEngine::undo(double start, double end) {
   hand_in();
   drop_strip_logs();
   for (std::size_t i = 0; i < tables_.size; ++i) {
-    tables_.records[i] = kept_records_[i];
-    tables_.cold[i] = kept_cold_[i];
+    const KeptDisk& kept = kept_[i];
+    ColdRecord& cold = tables_.cold[i];
+    tables_.records[i] = kept.record;
+    tables_.kick_counts[i] = kept.kick_count;
+    cold.last_contact = kept.last_contact, cold.next_kick = kept.next_kick;
+    cold.image_x = kept.image_x, cold.image_y = kept.image_y;
   }
   state_.tally = kept_tally_;
   state_.now = kept_now_;
