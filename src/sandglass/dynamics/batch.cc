@@ -365,7 +365,7 @@ bool Strip::run_batch() {
     const std::uint32_t lost_slot = other.partner;
     const bool loses = lost_slot != no_disk;
     Record& lost = loses ? records[lost_slot] : batch.nobody;
-    enter(lost.next_time, lost_slot, lost.next == Next::contact_entered_by_partner);
+    enter(other.next_time, lost_slot, loses && other.next == Next::contact);  // as in `leave_partner`
     lost.next = Next::review;
     lost.partner = no_disk;
     orphans += loses;

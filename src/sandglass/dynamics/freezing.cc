@@ -120,7 +120,7 @@ double Strip::freezing_time(std::uint32_t i) {
 
 void Strip::freeze(std::uint32_t i, double t) {
   Record& disk = records_[i];
-  if (disk.partner != no_disk) part(disk.partner);
+  if (disk.partner != no_disk) leave_partner(disk);
   const double after = (t - tables_->window.start) * (1 - 1e-6) - 1e-15;  // so that it is not rounded up
   set_next(disk, frozen_after(after > 0 ? after : 0), Next::freeze, no_disk);
   records_[i].concerned = true;
@@ -154,7 +154,7 @@ void Strip::concern_if_beside_frozen(std::uint32_t i) {
 void Strip::freeze_no_later(std::uint32_t i, double t) {
   Record& disk = records_[i];
   if (t >= disk.next_time || t > tables_->window.end) return;
-  if (disk.partner != no_disk) part(disk.partner);
+  if (disk.partner != no_disk) leave_partner(disk);
   set_next(disk, t, Next::freeze, no_disk);
   enter_event(t, i);
 }
@@ -193,8 +193,9 @@ void Strip::first_pass() {
   auto look_out = [this](std::uint32_t i) {
     concern_if_beside_frozen(i);
     if (!records_[i].concerned) return;
-    const std::uint32_t partner = records_[i].partner;
-    if (partner != no_disk && is_frozen(records_[partner])) part(i);
+    const Record& disk = records_[i];
+    if (disk.partner != no_disk && is_frozen(records_[disk.partner]))
+      lose_partner(i, disk.next_time, disk.next == Next::contact_entered_by_partner);
     freeze_no_later(i, freezing_time(i));
   };
   const std::uint32_t lower = core_.count < reach_ ? core_.count : reach_;

@@ -33,14 +33,19 @@ void Strip::enter_calendar(std::uint32_t i) {
   if (cold_[i].next_kick < never && cold_[i].next_kick != disk.next_time) calendar_.push(cold_[i].next_kick, i);
 }
 
-/// Disk i has lost the partner of its contact. It looks for another when the contact would have come: whoever meets it
-/// before will have found it.
-void Strip::part(std::uint32_t i) {
+/// Disk i has lost the partner of its contact at time t. It looks for another when the contact would have come: whoever
+/// meets it before will have found it.
+void Strip::lose_partner(std::uint32_t i, double t, bool entered_by_partner) {
   ++bookkeeping_.orphans;
-  Record& disk = records_[i];
-  if (disk.next == Next::contact_entered_by_partner) enter_event(disk.next_time, i);
-  disk.next = Next::review;
-  disk.partner = no_disk;
+  if (entered_by_partner) enter_event(t, i);
+  records_[i].next = Next::review;
+  records_[i].partner = no_disk;
+}
+
+/// The partner of a disk's contact loses it. All there is to know stands in the disk's own record; the partner's, which
+/// may be far from the processor, is not read.
+void Strip::leave_partner(const Record& disk) {
+  lose_partner(disk.partner, disk.next_time, disk.next == Next::contact);
 }
 
 /// Whether a contact at time t of disk i with `other` comes before what `other` has next, in canonical order: contacts
@@ -155,11 +160,11 @@ Strip::Foreseen Strip::earliest_contact(std::uint32_t i) const {
   if (!(speed * (t - disk.time) < 0.999 * box_.transit)) consider(transit_time(disk, box_), Next::transit);
 
   if (next == Next::contact && contact.partner == disk.partner) return;  // it has chosen i already, or nothing comes
-  if (disk.partner != no_disk) part(disk.partner);
+  if (disk.partner != no_disk) leave_partner(disk);
   if (next == Next::contact) {
     if (contact.partner == no_disk) return;
     Record& other = records_[contact.partner];
-    if (other.partner != no_disk) part(other.partner);
+    if (other.partner != no_disk) leave_partner(other);
     set_next(other, t, Next::contact_entered_by_partner, i);
   }
   set_next(disk, t, next, next == Next::contact ? contact.partner : no_disk);

@@ -310,7 +310,7 @@ double Strip::kick_pair(std::uint32_t i, std::uint32_t j, double t, double px, d
   const double gained =
       give_momentum(a, px, py, inverse_mass(disk_i)) + give_momentum(b, -px, -py, inverse_mass(disk_j));
   const Lanes of_i = first_contacts(i, a, j, b), of_j = first_contacts(j, b, i, a);
-  if (disk_j.partner != no_disk) part(disk_j.partner);  // i has none, or its kick would not have come next
+  if (disk_j.partner != no_disk) leave_partner(disk_j);  // i has none, or its kick would not have come next
   set_flight(disk_i, a);
   set_flight(disk_j, b);
   ++tally_.kicked[disk_i.species];

@@ -153,7 +153,8 @@ class alignas(128) Strip {
   void settle(std::uint32_t i, Lanes begun);
   void schedule(std::uint32_t i, Foreseen contact);
   void enter_event(double t, std::uint32_t i);
-  void part(std::uint32_t i);
+  void lose_partner(std::uint32_t i, double t, bool entered_by_partner);
+  void leave_partner(const Record& disk);
   [[nodiscard]] Foreseen earliest_contact(std::uint32_t i) const;
   [[nodiscard]] Foreseen earliest_contact_by_rule(std::uint32_t i) const;
   template <class Amend>
