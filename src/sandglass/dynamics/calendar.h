@@ -17,16 +17,17 @@ inline namespace SANDGLASS_ISA {
 /// Time is cut into windows of some hundred events. An entry of a later window is only appended to that window's chain
 /// of chunks; when a window opens, its entries are sorted, and are then taken one after the other. What is entered into
 /// the window while it is open, a small part, is kept unsorted beside them (late). Nothing is moved or removed when a
-/// prediction changes: an entry counts only while it still states its disk's next_time. What does not count when its
-/// window opens is left out.
+/// prediction changes: an entry counts only while it still states its disk's next_time. What does not count is left out
+/// when its window opens; or, where the disks' records do not fit into the cache and would have to be brought twice,
+/// some events before its turn.
 /// Nearly all branches here go the same way nearly always; those of a heap, or of a bucket of a few events, do not, and
 /// that costs more than the work.
 class Calendar {
  public:
-  /// `size` entries live at a time, `lead` ahead in the mean; a window is `window` long, from time `start` on. There
-  /// are `disks` disks.
-  Calendar(double start, double lead, double window, std::size_t size, std::size_t disks)
-      : start_(start), inverse_width_(1 / window), lead_(lead), out_of_cache_(disks > 20000) {
+  /// `size` entries live at a time, `lead` ahead in the mean; a window is `window` long, from time `start` on.
+  /// `out_of_cache`: whether the disks' records do not fit into the cache.
+  Calendar(double start, double lead, double window, std::size_t size, bool out_of_cache)
+      : start_(start), inverse_width_(1 / window), lead_(lead), out_of_cache_(out_of_cache) {
     while (keys_ < 16384 && static_cast<double>(keys_) * lead < 4 * static_cast<double>(size) * window) keys_ *= 2;
     std::size_t windows = 16;
     while (windows < 65536 && static_cast<double>(windows) * window < 4 * lead) windows *= 2;
@@ -105,8 +106,7 @@ class Calendar {
     for (std::size_t i = 0; i < late_count_; ++i) late_times_[i] = nothing;
     late_count_ = 0;
     late_soonest_ = nothing;
-    head_ = 0;
-    for (std::size_t i = 0; i < beyond_end; ++i) sorted_[i] = {nothing, 0, 0};
+    begin_sorted(0);
   }
 
   /// Takes out and returns the slot whose event is the earliest and not after `limit`; no_disk if there is none.
@@ -115,6 +115,8 @@ class Calendar {
   template <class Before, class Fetch>
   [[gnu::always_inline]] std::uint32_t pop(const Record* records, double limit, Before&& before, Fetch&& fetch) {
     for (;;) {
+      if (head_ + look_ahead >= seen_ && unseen_ < end_) [[unlikely]]
+        see_more(records);
       const Entry next = sorted_[head_];
       if (late_soonest_ <= next.time || next.time == sorted_[head_ + 1].time) [[unlikely]] {
         if (late_soonest_ == nothing && next.time == nothing) {
@@ -122,6 +124,8 @@ class Calendar {
           open_next_window(records);
         } else if (late_soonest_ > next.time && next.slot == sorted_[head_ + 1].slot) {
           ++head_;  // one entry twice: a disk may have found again and again that its kick comes next
+        } else if (unseen_ < end_ && sorted_[seen_ - 1].time == next.time) {
+          see_more(records);  // there may be more at that time
         } else if (const Choice choice = first_of_ties(records, before); choice.time > limit) {
           return no_disk;
         } else if (take(choice); states(records[choice.slot], choice.time)) {
@@ -147,6 +151,7 @@ class Calendar {
   static constexpr double nothing = std::numeric_limits<double>::infinity();
   static constexpr unsigned fetch_stages = 4, stages_ahead[fetch_stages] = {12, 8, 5, 2};  // events
   static constexpr std::size_t beyond_end = 40;  // entries for nobody after the sorted ones
+  static constexpr std::size_t look_ahead = 32;  // sorted entries that are known to count, if there are so many
 
   struct Entry {
     double time;
@@ -326,7 +331,7 @@ class Calendar {
       const auto key = static_cast<std::int64_t>((time - start_) * scale - origin);
       const auto last = static_cast<std::int64_t>(keys_) - 1;
       unsorted_[count] = {time, slot, static_cast<std::uint32_t>(key < 0 ? 0 : key < last ? key : last)};
-      count += states(records[slot], time);
+      count += out_of_cache_ || states(records[slot], time);
     });
     for (std::uint32_t& first : firsts_) first = 0;
     for (std::size_t i = 0; i < count; ++i) ++firsts_[unsorted_[i].key + 1];
@@ -335,25 +340,52 @@ class Calendar {
     for (std::size_t i = 1; i < count; ++i)
       for (std::size_t j = i; j > 0 && sorted_[j].time < sorted_[j - 1].time; --j)
         std::swap(sorted_[j], sorted_[j - 1]);
-    for (std::size_t i = count; i < count + beyond_end; ++i) sorted_[i] = {nothing, 0, 0};
-    head_ = 0;
+    begin_sorted(count);
+    if (out_of_cache_)
+      for (std::size_t i = 0; i < look_ahead; ++i) prefetch(&records[sorted_[i].slot]);
+    else
+      seen_ = unseen_ = count;
+  }
+
+  /// There are `count` sorted entries, none of which has been looked at.
+  void begin_sorted(std::size_t count) {
+    head_ = seen_ = unseen_ = 0;
+    end_ = count;
+    close_sorted(count);
+  }
+  void close_sorted(std::size_t end) {
+    for (std::size_t i = end; i < end + beyond_end; ++i) sorted_[i] = {nothing, 0, 0};
+  }
+
+  /// Leaves out what does not count of the next sorted entries.
+  [[gnu::noinline]] void see_more(const Record* records) {
+    do {
+      for (std::size_t n = 0; n < look_ahead && unseen_ < end_; ++n) {
+        prefetch(&records[sorted_[unseen_ + look_ahead].slot]);
+        const Entry entry = sorted_[unseen_++];
+        sorted_[seen_] = entry;
+        seen_ += states(records[entry.slot], entry.time);
+      }
+    } while (unseen_ < end_ && seen_ < head_ + 2 * look_ahead);
+    if (unseen_ == end_) close_sorted(seen_);
   }
 
   [[gnu::noinline]] void make_room(std::size_t size) {
     sorted_ = Array<Entry>(size + size / 2);
     unsorted_ = Array<Entry>(size + size / 2);
-    for (Entry& entry : sorted_) entry = {nothing, 0, 0};
-    head_ = 0;
+    begin_sorted(0);
   }
 
   double start_ = 0, inverse_width_ = 1;  // of a window
   double lead_ = 0;                       // of an entry, in the mean
-  bool out_of_cache_ = false;             // whether fetching far ahead pays
+  bool out_of_cache_ = false;             // whether records must be fetched far ahead
   std::int64_t window_ = 0;               // the open one, counted from start_
   double closes_ = 0;                     // when that ends
   std::int64_t ring_mask_ = 0;            // number of windows in the ring, less 1
   Array<Entry> sorted_, unsorted_;        // what was known of the open window when it opened
   std::size_t head_ = 0;                  // the first of sorted_ not yet taken
+  std::size_t seen_ = 0;                  // up to here sorted_ holds what counts,
+  std::size_t unseen_ = 0, end_ = 0;      // and here what has not been looked at
   std::size_t keys_ = 16;                 // four for each event
   Array<std::uint32_t> firsts_;           // by key: where its entries begin in sorted_
   Array<double> late_times_;              // entered since; `nothing` from late_count_ on

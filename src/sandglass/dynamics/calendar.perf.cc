@@ -11,7 +11,8 @@ inline namespace SANDGLASS_ISA {
 /// As many entries as there are leads (how far ahead an event lies; mean 1), which are used over and over.
 void pop_and_push(benchmark::State& state, const double* leads, std::size_t size) {
   Array<Record> records(size);
-  Calendar calendar(0, 1, 2 / std::sqrt(static_cast<double>(size)), size, size);  // windows as long as in the engine
+  Calendar calendar(0, 1, 2 / std::sqrt(static_cast<double>(size)), size,
+                    size > 20000);  // windows as long as in the engine
   std::size_t drawn = 0;
   auto enter = [&](std::uint32_t slot, double now) {
     records[slot].next_time = now + leads[drawn];

@@ -45,8 +45,9 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
 /// With few disks most events are beside one another; with many, memory is waited for, and a batch asks for too much of
 /// it at a time; kicks would end most batches (bench/RESULTS.md).
 bool IsaEngine::works_in_batches() const {
+  if (out_of_cache()) return false;
   if (tuning_.batches != Tuning::Batches::where_faster) return tuning_.batches == Tuning::Batches::always;
-  return state_.drive.kind == DriveKind::none && tables_.size >= 2000 && tables_.size <= 20000;
+  return state_.drive.kind == DriveKind::none && tables_.size >= 2000;
 }
 
 /// Lists and predictions for the records as they are. Returns the deepest overlap beyond rounding, if any.
@@ -81,7 +82,7 @@ OverlappingPair IsaEngine::make_lists() {
     }
   }
   // First predictions into a calendar where nearly all is far ahead, only to learn how far that is.
-  whole_.set_calendar(Calendar(state_.now - state_.epoch_length, state_.epoch_length, state_.epoch_length, 0, 0));
+  whole_.set_calendar(Calendar(state_.now - state_.epoch_length, state_.epoch_length, state_.epoch_length, 0, false));
   for (std::uint32_t i = 0; i < tables_.size; ++i) whole_.predict(i);
   return deepest;
 }
@@ -122,7 +123,7 @@ Calendar IsaEngine::calendar_for(double lead, std::size_t size) const {
   const auto disks = static_cast<double>(size);
   double events = std::fmin(std::fmax(2 * std::sqrt(disks), 8), 4096);
   if (tuning_.window_events > 0) events = tuning_.window_events;
-  return Calendar(state_.now, lead, events * lead / disks, size, tables_.size);
+  return Calendar(state_.now, lead, events * lead / disks, size, out_of_cache());
 }
 
 /// About the mean time from now to a disk's next event, from the median over a sample of disks: the median of an

@@ -14,10 +14,11 @@ namespace sandglass {
 
 /// Free choices of the engine. None of them changes a bit of the result; 0 means "let the program choose".
 struct Tuning {
-  double skin = 0;           ///< width of the neighbour lists beyond contact, in R_s
-  double cell_size = 0;      ///< least side of a cell of the look-up grid, in R_s
-  double window_events = 0;  ///< events in a window of the calendar
-  /// Whether one thread works out several events at a time (batch.cc).
+  double skin = 0;                    ///< width of the neighbour lists beyond contact, in R_s
+  double cell_size = 0;               ///< least side of a cell of the look-up grid, in R_s
+  double window_events = 0;           ///< events in a window of the calendar
+  std::size_t most_in_cache = 20000;  ///< disks whose records are taken to fit into the cache
+  /// Whether one thread works out several events at a time (batch.cc); never where records do not fit into the cache.
   enum class Batches : std::uint8_t { where_faster, never, always } batches = Batches::where_faster;
   unsigned threads = 1;  ///< at most; fewer where the box is too small for as many strips
   // For tests of what several threads do:

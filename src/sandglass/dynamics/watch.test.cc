@@ -29,7 +29,7 @@ struct FaultInjection {
   Record& record(std::uint32_t i) { return damaged.tables_.records[i]; }
   ColdRecord& cold(std::uint32_t i) { return damaged.tables_.cold[i]; }
   std::uint32_t* list(std::uint32_t i) { return const_cast<std::uint32_t*>(damaged.whole_.neighbours().list(i)); }
-  void forget_calendar() { damaged.whole_.set_calendar(Calendar(state.now, 1, 1, 0, 0)); }
+  void forget_calendar() { damaged.whole_.set_calendar(Calendar(state.now, 1, 1, 0, false)); }
   std::uint32_t somebody_with_partner() {
     std::uint32_t i = 0;
     while (record(i).partner == no_disk) ++i;

@@ -32,6 +32,7 @@ RandomSystem any_system() {
 Tuning any_tuning() {
   return {.skin = *rc::gen::element(0.05, 0.3, 1.0, 2.0),
           .cell_size = *rc::gen::element(0.0, 1.0, 1.5, 4.0),
+          .most_in_cache = *rc::gen::element<std::size_t>(0, 20000),
           .batches = *rc::gen::element(Tuning::Batches::never, Tuning::Batches::always),
           .threads = static_cast<unsigned>(*rc::gen::element(2, 3, 4)),
           .strip_rows = 1,
