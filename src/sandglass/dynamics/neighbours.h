@@ -104,9 +104,8 @@ class Neighbours {
     grid_.place(slot, at, records[slot].species);
   }
 
-  /// Makes the list of a disk anew around another centre, and enters it into or strikes it from the lists of those who
-  /// come or go. Where the tables are too small they are enlarged; but if they may not move (`fixed`), nothing is done
-  /// and the answer is false.
+  /// Makes the list of a disk anew around another centre; tell_others must follow. Where the tables are too small they
+  /// are enlarged; but if they may not move (`fixed`), nothing is done and the answer is false.
   bool renew(std::uint32_t slot, FixedPoint old, FixedPoint at, Record* records, bool fixed = false) {
     grid_.displace(slot, old, records[slot].species);
     const Grid::Slots found = find(at, records[slot]);
@@ -129,15 +128,22 @@ class Neighbours {
       goers[gone] = listed(slot, n);
       gone += !holds(found.first, found.count, goers[gone]);
     }
-    for (std::uint32_t n = 0; n < came + gone; ++n) prefetch(list(changes_[n]));
+    for (std::uint32_t n = 0; n < came + gone; ++n) prefetch(list(changes_[n])), prefetch(&records[changes_[n]]);
     for (std::uint32_t n = 0; n < block; ++n) entry(slot, n) = n < found.count ? found.first[n] : nobody_;
     const std::uint32_t longest = before > found.count ? before : found.count;
     for (std::uint32_t n = block; n < longest; ++n) entry(slot, n) = n < found.count ? found.first[n] : nobody_;
     records[slot].neighbour_count = static_cast<std::uint16_t>(found.count);
-    for (std::uint32_t n = 0; n < gone; ++n) remove(goers[n], slot, records);
-    for (std::uint32_t n = 0; n < came; ++n) add(changes_[n], slot, records);
     grid_.place(slot, at, records[slot].species);
+    came_ = came;
+    gone_ = gone;
     return true;
+  }
+
+  /// Enters the disk whose list was made anew into the lists of those who came, and strikes it from those of who went.
+  /// Their lists may be far from the processor, so it is well to do something else in between.
+  void tell_others(std::uint32_t slot, Record* records) {
+    for (std::uint32_t n = 0; n < gone_; ++n) remove(changes_[came_ + n], slot, records);
+    for (std::uint32_t n = 0; n < came_; ++n) add(changes_[n], slot, records);
   }
 
   /// Whether the list of a disk, whose list centre is `at`, names everybody whose list centre is within range, and
@@ -240,7 +246,8 @@ class Neighbours {
   NeighbourTable* table_ = nullptr;
   ColdRecord* cold_ = nullptr;
   std::uint32_t* more_ = nullptr;
-  Array<std::uint32_t> changes_ = Array<std::uint32_t>(64);
+  Array<std::uint32_t> changes_ = Array<std::uint32_t>(64);  // who came into the list made last, then who went
+  std::uint32_t came_ = 0, gone_ = 0;
 };
 
 }  // namespace SANDGLASS_ISA

@@ -332,13 +332,16 @@ void Strip::on_transit(std::uint32_t i, double t) {
 /// Looks again for the next contact of disk i, after making its list anew if that has expired.
 void Strip::on_review(std::uint32_t i, double t) {
   set_next(records_[i], never, Next::review, no_disk);
-  if (!within_leash(records_[i], cold_[i], t) && !remake_list(i, t)) [[unlikely]]
+  if (within_leash(records_[i], cold_[i], t)) return predict(i);
+  if (!remake_list(i, t)) [[unlikely]]
     return freeze(i, t);
   predict(i);
+  neighbours_.tell_others(i, records_);
 }
 
-/// Makes the list of disk i around where it is at time t. Its record does not change. Nobody names i, whose next event
-/// this was; so nobody who has left its list does. False if that would reach into what another thread works on.
+/// Makes the list of disk i anew around where it is at time t; Neighbours::tell_others must follow. Its record does not
+/// change. Nobody names i, whose next event this was; so nobody who has left its list does. False if that would reach
+/// into what another thread works on.
 bool Strip::remake_list(std::uint32_t i, double t) {
   Flight now(records_[i]);
   std::int32_t image_x = 0, image_y = 0;
