@@ -257,7 +257,7 @@ void Strip::draw_kicks(std::uint32_t i, double t) {
   for (std::size_t n = 0; n < 24 && size < DrawnKicks::size; ++n) {  // which are kicks cannot be foretold: no branch
     const Calendar::Coming entry = calendar_.coming(n);
     const Record& disk = records_[entry.slot];
-    const bool counts = disk.next == Next::kick & disk.next_time == entry.time & entry.slot != i;
+    const bool counts = (disk.next == Next::kick) & (disk.next_time == entry.time) & (entry.slot != i);
     drawn.slot[size] = entry.slot;
     drawn_until_ = counts ? entry.time : drawn_until_;
     size += counts;

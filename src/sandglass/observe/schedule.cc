@@ -51,7 +51,7 @@ MeasurementPlan plan_measurement(double start, double interval_length, std::uint
   plan.temperature_samples = static_cast<std::uint64_t>(std::clamp(free_times / 20, 5.0, 50.0));
   while (plan.origins < 8) {
     ++plan.origins;
-    if (static_cast<double>(make_schedule(plan).evaluations()) > free_times / 5) {
+    if (static_cast<double>(make_schedule(plan).evaluations()) > free_times / 4) {
       --plan.origins;
       break;
     }

@@ -38,10 +38,9 @@ struct MeasurementPlan {
 bool compatible(const MeasurementPlan& a, const MeasurementPlan& b);
 
 /// A plan whose cost is bounded: lags from `mean_free_time` / 50 to one interval, and as many origins as keep the
-/// number of evaluations below one per five mean free times (at most 8). Sampling then takes, with the frames of the
-/// structure, less than a twentieth of the time of an engine that does 3 * 10^6 collisions/s at N = 10^4, and less yet
-/// when intervals are longer. A function of its arguments alone, not of the machine. Throws InputError when an interval
-/// is shorter than one mean free time.
+/// number of evaluations below one per four mean free times (at most 8). Sampling then takes about a twentieth of the
+/// time of an engine that does 3 * 10^6 collisions/s at N = 10^4, less when intervals are longer. A function of its
+/// arguments alone, not of the machine. Throws InputError when an interval is shorter than one mean free time.
 MeasurementPlan plan_measurement(double start, double interval_length, std::uint64_t intervals, double mean_free_time,
                                  double lags_per_decade, std::vector<double> wavenumbers);
 
