@@ -29,6 +29,7 @@ Strip::Strip(Tables& tables)
   for (const int a : {small, big})
     for (const int b : {small, big}) masses_[a][b] = tables.masses[a][b];
   set_next(batch_.nobody, never, Next::review, no_disk);
+  for (std::uint32_t& partner : likely_partners_) partner = no_disk;
   if (tables.size == 0) return;
   const double range = neighbours_.longest_range() / neighbours_.grid().unit() + 2;
   range_ = range < 0xffffffffu ? static_cast<std::uint32_t>(range) : 0xffffffffu;
@@ -146,10 +147,12 @@ void Strip::fetch_grid(const Record& disk) const {
 void Strip::fetch_kick_partner(std::uint32_t i) {
   const Record& disk = records_[i];
   const Drive& drive = tables_->state.drive;
+  std::uint32_t& likely_partner = likely_partners_[i % 16];
+  likely_partner = no_disk;
   if (disk.next != Next::kick || drive.kind != DriveKind::pair) return;
   if (drive.partner == PartnerRule::within) return fetch_grid(disk);
   const auto [partner, gap] = nearest_listed(i, disk.next_time);
-  likely_partners_[i % 16] = partner;
+  likely_partner = partner;
   if (partner != no_disk) fetch_disk(partner);
   if (!nobody_unlisted_within(gap, i, disk.next_time)) fetch_grid(disk);
 }
@@ -251,22 +254,19 @@ Kick Strip::next_kick(std::uint32_t i, double t) {
 /// the processor: what the search for their partners reads is brought nearer meanwhile.
 void Strip::draw_kicks(std::uint32_t i, double t) {
   DrawnKicks& drawn = drawn_kicks_;
-  drawn.slot[0] = i;
-  drawn_until_ = t;
-  std::uint32_t size = 1;
-  for (std::size_t n = 0; n < 24 && size < DrawnKicks::size; ++n) {  // which are kicks cannot be foretold: no branch
-    const Calendar::Coming entry = calendar_.coming(n);
-    const Record& disk = records_[entry.slot];
-    const bool counts = (disk.next == Next::kick) & (disk.next_time == entry.time) & (entry.slot != i);
-    drawn.slot[size] = entry.slot;
-    drawn_until_ = counts ? entry.time : drawn_until_;
-    size += counts;
-  }
-  for (std::uint32_t n = size; n < DrawnKicks::size; ++n) drawn.slot[n] = i;
-  for (std::uint32_t n = 0; n < DrawnKicks::size; ++n) {
-    const std::uint32_t slot = drawn.slot[n];
-    drawn.id[n] = ids_[slot], drawn.count[n] = kick_counts_[slot] + 1;
+  std::uint32_t size = 0;
+  auto add = [&](std::uint32_t slot, double time) {
+    drawn.slot[size] = slot, drawn.id[size] = ids_[slot], drawn.count[size] = kick_counts_[slot] + 1;
+    ++size;
+    drawn_until_ = time;
     prefetch(neighbours_.list(slot));
+  };
+  add(i, t);
+  for (std::size_t n = 0; n < 32 && size < DrawnKicks::size; ++n) {
+    const Calendar::Coming entry = calendar_.coming(n);
+    if (entry.time == never) break;
+    const Record& disk = records_[entry.slot];
+    if (disk.next == Next::kick && disk.next_time == entry.time && entry.slot != i) add(entry.slot, entry.time);
   }
   drawn.draw(tables_->state.seed);
   for (std::uint32_t n = 0; n < size; ++n)
