@@ -5,14 +5,16 @@
 
 #include <cmath>
 
+#include "sandglass/dynamics/simulation.h"
+
 namespace sandglass {
 inline namespace SANDGLASS_ISA {
 
 /// As many entries as there are leads (how far ahead an event lies; mean 1), which are used over and over.
 void pop_and_push(benchmark::State& state, const double* leads, std::size_t size) {
   Array<Record> records(size);
-  Calendar calendar(0, 1, 2 / std::sqrt(static_cast<double>(size)), size,
-                    size > 20000);  // windows as long as in the engine
+  const double window = 2 / std::sqrt(static_cast<double>(size));  // as long as in the engine
+  Calendar calendar(0, 1, window, size, size > Tuning().most_in_cache);
   std::size_t drawn = 0;
   auto enter = [&](std::uint32_t slot, double now) {
     records[slot].next_time = now + leads[drawn];

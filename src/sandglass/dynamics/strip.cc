@@ -259,7 +259,7 @@ void Strip::draw_kicks(std::uint32_t i, double t) {
     drawn.slot[size] = slot, drawn.id[size] = ids_[slot], drawn.count[size] = kick_counts_[slot] + 1;
     ++size;
     drawn_until_ = time;
-    prefetch(neighbours_.list(slot));
+    fetch_disk(slot);
   };
   add(i, t);
   for (std::size_t n = 0; n < 32 && size < DrawnKicks::size; ++n) {
