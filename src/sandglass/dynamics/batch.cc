@@ -197,7 +197,7 @@ bool Strip::run_batch() {
   const unsigned begun = searches < behind ? searches : behind;
   for (unsigned n = 0; n < begun; ++n) approach_listed(n);
   for (unsigned n = begun; n < searches; ++n) {
-    if (n % 2 == 0) calendar_.fetch_ahead(n / 2 + 11, records_, [this](std::uint32_t i) { fetch_disks(i); });
+    if (n % 2 == 0) fetch_within_cache(n / 2 + 11);
     if (n + 2 < searches) fetch_listed(batch.slot[batch.lane[n + 2]]);
     approach_listed(n);
     meet_listed(n - behind);

@@ -77,14 +77,6 @@ class Calendar {
   /// Takes out the next `count` of the sorted entries.
   void take_ahead(std::size_t count) { head_ += count; }
 
-  /// Where the tables fit into the cache: brings what the n-th entry's successors will need from one level of it to the
-  /// next. `fetch(slot)` does so with what belongs to the disk itself.
-  template <class Fetch>
-  [[gnu::always_inline]] void fetch_ahead(std::size_t n, const Record* records, Fetch&& fetch) const {
-    prefetch(&records[sorted_[head_ + n + 8].slot]);
-    if (const Entry& later = sorted_[head_ + n + 4]; later.time < nothing) fetch(later.slot);
-  }
-
   /// Some three leads ahead: what comes later for a slot need not be entered yet, it is enough to look again then. Most
   /// often something else will have come before, and the entry would only have been in the way. Not the same time for
   /// any two slots: entries at one time are slow to order.
@@ -110,10 +102,9 @@ class Calendar {
   }
 
   /// Takes out and returns the slot whose event is the earliest and not after `limit`; no_disk if there is none.
-  /// `before(a, b)` orders two slots whose events are at the same time. `fetch(stage, slot)` is told whose events come
-  /// a few events later: where the tables do not fit into the cache in four stages, else of the first alone.
-  template <class Before, class Fetch>
-  [[gnu::always_inline]] std::uint32_t pop(const Record* records, double limit, Before&& before, Fetch&& fetch) {
+  /// `before(a, b)` orders two slots whose events are at the same time.
+  template <class Before>
+  [[gnu::always_inline]] std::uint32_t pop(const Record* records, double limit, Before&& before) {
     for (;;) {
       if (head_ + look_ahead >= seen_ && unseen_ < end_) [[unlikely]]
         see_more(records);
@@ -135,12 +126,6 @@ class Calendar {
       }
       if (next.time > limit) return no_disk;
       ++head_;
-      if (out_of_cache_) {
-        for (unsigned stage = 0; stage < fetch_stages; ++stage)
-          if (const Entry& later = sorted_[head_ + stages_ahead[stage]]; later.time < nothing) fetch(stage, later.slot);
-      } else {
-        fetch_ahead(0, records, [&](std::uint32_t i) { fetch(0, i); });
-      }
       if (states(records[next.slot], next.time)) [[likely]]
         return next.slot;
     }
@@ -149,7 +134,6 @@ class Calendar {
  private:
   static constexpr std::uint32_t none = 0xffffffffu;
   static constexpr double nothing = std::numeric_limits<double>::infinity();
-  static constexpr unsigned fetch_stages = 4, stages_ahead[fetch_stages] = {12, 8, 5, 2};  // events
   static constexpr std::size_t beyond_end = 40;  // entries for nobody after the sorted ones
   static constexpr std::size_t look_ahead = 32;  // sorted entries that are known to count, if there are so many
 

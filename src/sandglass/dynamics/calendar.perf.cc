@@ -22,9 +22,10 @@ void pop_and_push(benchmark::State& state, const double* leads, std::size_t size
     if (++drawn == size) drawn = 0;
   };
   auto in_order = [](std::uint32_t a, std::uint32_t b) { return a < b; };
-  auto fetch = [&](unsigned, std::uint32_t slot) { prefetch(&records[slot]); };  // the engine has more to fetch
+
   auto next = [&] {
-    const std::uint32_t slot = calendar.pop(&records[0], std::numeric_limits<double>::infinity(), in_order, fetch);
+    const std::uint32_t slot = calendar.pop(&records[0], std::numeric_limits<double>::infinity(), in_order);
+    prefetch(&records[calendar.coming(8).slot]);  // the engine has more to fetch
     enter(slot, records[slot].next_time);
   };
   for (std::uint32_t slot = 0; slot < size; ++slot) enter(slot, 0);

@@ -42,14 +42,13 @@ TEST_CASE("a calendar gives the events that count, in order of time and, at one 
       calendar.push(time, slot);
     };
     auto in_order = [](std::uint32_t a, std::uint32_t b) { return a < b; };
-    auto fetch = [](unsigned, std::uint32_t) {};
     for (std::uint32_t slot = 0; slot < size; ++slot)
       for (int again = 0; again < 3; ++again) enter(slot, 0);
     for (int event = 0; event < 1500; ++event) {
       const std::uint32_t expected = model.earliest();
       const double now = model.records[expected].next_time;
-      RC_ASSERT(calendar.pop(model.records.begin(), std::nextafter(now, -1.0), in_order, fetch) == no_disk);
-      RC_ASSERT(calendar.pop(model.records.begin(), now, in_order, fetch) == expected);
+      RC_ASSERT(calendar.pop(model.records.begin(), std::nextafter(now, -1.0), in_order) == no_disk);
+      RC_ASSERT(calendar.pop(model.records.begin(), now, in_order) == expected);
       enter(expected, now + 1e-3);
       const auto other = static_cast<std::uint32_t>(model.any(size));
       if (model.any(3) == 0) enter(other, now);

@@ -245,7 +245,7 @@ void Strip::resume(const Strip& other) {
 void Strip::later_pass() {
   for (std::uint32_t n = 0; n < resumed_; ++n) {
     if (n + 16 < resumed_) fetch_disk(concerned_[n + 16]);
-    if (n + 8 < resumed_) fetch_neighbours(concerned_[n + 8]);
+    if (n + 8 < resumed_) fetch_listed(concerned_[n + 8]);
     predict(concerned_[n]);
   }
   run_window();

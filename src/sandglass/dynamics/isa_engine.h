@@ -29,7 +29,6 @@ class IsaEngine final : public Engine {
 
   OverlappingPair make_lists();
   void make_calendar();
-  [[nodiscard]] bool out_of_cache() const { return tables_.size > tuning_.most_in_cache; }
   [[nodiscard]] bool works_in_batches() const;
   [[nodiscard]] Fault fault_of(std::uint32_t i);
   [[nodiscard]] double mean_lead() const;

@@ -33,6 +33,7 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
   }
   state_.disks = std::vector<Disk>();  // gives the memory back
   windows_done_ = undone_ = 0;
+  tables_.out_of_cache = tables_.size > tuning_.most_in_cache;
   tables_.in_batches = works_in_batches();
   const OverlappingPair deepest = make_lists();
   if (strips_ == 1)
@@ -45,7 +46,7 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
 /// With few disks most events are beside one another; with many, memory is waited for, and a batch asks for too much of
 /// it at a time; kicks would end most batches (bench/RESULTS.md).
 bool IsaEngine::works_in_batches() const {
-  if (out_of_cache()) return false;
+  if (tables_.out_of_cache) return false;
   if (tuning_.batches != Tuning::Batches::where_faster) return tuning_.batches == Tuning::Batches::always;
   return state_.drive.kind == DriveKind::none && tables_.size >= 2000;
 }
@@ -123,7 +124,7 @@ Calendar IsaEngine::calendar_for(double lead, std::size_t size) const {
   const auto disks = static_cast<double>(size);
   double events = std::fmin(std::fmax(2 * std::sqrt(disks), 8), 4096);
   if (tuning_.window_events > 0) events = tuning_.window_events;
-  return Calendar(state_.now, lead, events * lead / disks, size, out_of_cache());
+  return Calendar(state_.now, lead, events * lead / disks, size, tables_.out_of_cache);
 }
 
 /// About the mean time from now to a disk's next event, from the median over a sample of disks: the median of an

@@ -45,13 +45,12 @@ Strip::Strip(Tables& tables, Rows core, std::uint32_t reach, std::uint32_t lane)
 void Strip::run(double end) {
   end_ = end;
   auto in_order = [this](std::uint32_t a, std::uint32_t b) { return before(a, b); };
-  auto fetch_stage = [this](unsigned stage, std::uint32_t i) { fetch(stage, i); };
-  auto pop = [&] { return calendar_.pop(records_, end_, in_order, fetch_stage); };
   const bool in_batches = tables_->in_batches && whole_;  // a batch also reads records that it does not need
   for (;;) {
     if (in_batches && run_batch()) continue;
-    const std::uint32_t i = pop();
+    const std::uint32_t i = calendar_.pop(records_, end_, in_order);
     if (i == no_disk) return;
+    fetch_ahead();
     assert(owns(i));
     const Record& disk = records_[i];
     const double t = disk.next_time;
@@ -98,18 +97,35 @@ void Strip::hand_in(Tally& tally, Simulation::Bookkeeping& bookkeeping) {
   bookkeeping_ = {};
 }
 
-/// Brings what an event of disk i will need nearer to the processor. Each stage reads what the one before has fetched.
-[[gnu::always_inline]] inline void Strip::fetch(unsigned stage, std::uint32_t i) {
-  switch (stage) {
-    case 0:
-      return fetch_disks(i);
-    case 1:
-      return fetch_neighbours(i);
-    case 2:
-      return fetch_kick_partner(i);
-    default:
-      return fetch_partners_neighbours(i);
-  }
+/// Brings what the events after the present one will need nearer to the processor. Each stage reads what the one before
+/// has fetched. The neighbours, by far the most of it, are left for two portions amidst the present event: all at once
+/// they would queue for the memory.
+[[gnu::always_inline]] inline void Strip::fetch_ahead() {
+  if (!tables_->out_of_cache) return fetch_within_cache(0);
+  auto coming = [this](std::size_t events) {
+    const Calendar::Coming entry = calendar_.coming(events);
+    return entry.time < never ? entry.slot : no_disk;
+  };
+  if (const std::uint32_t i = coming(12); i != no_disk) fetch_disks(i);
+  upcoming_ = coming(8);
+  if (const std::uint32_t i = coming(5); i != no_disk) fetch_kick_partner(i);
+  if (const std::uint32_t i = coming(2); i != no_disk) fetch_partners_neighbours(i);
+}
+
+/// The first portion.
+[[gnu::always_inline]] inline void Strip::fetch_listed_ahead() const {
+  if (upcoming_ != no_disk) fetch_listed(upcoming_);
+}
+
+/// The second portion.
+[[gnu::always_inline]] inline void Strip::fetch_others_ahead() const {
+  if (upcoming_ != no_disk) fetch_others(upcoming_);
+}
+
+/// From one level of the cache to the next, for the events after the n-th from now.
+[[gnu::always_inline]] inline void Strip::fetch_within_cache(std::size_t n) const {
+  prefetch(&records_[calendar_.coming(n + 8).slot]);
+  if (const Calendar::Coming later = calendar_.coming(n + 4); later.time < never) fetch_disks(later.slot);
 }
 
 /// Its cold record with the list, and its partner's.
@@ -121,16 +137,16 @@ void Strip::fetch_disks(std::uint32_t i) const {
 
 void Strip::fetch_disk(std::uint32_t i) const { prefetch(&cold_[i]); }
 
+/// Through its list, its neighbours.
 void Strip::fetch_listed(std::uint32_t i) const {
   const std::uint32_t* list = neighbours_.list(i);
   for (std::uint32_t n = 0; n < Neighbours::block; ++n) prefetch(&records_[list[n]]);
   prefetch(records_[i].neighbour_count > Neighbours::block ? neighbours_.more(i) : list);
 }
 
-/// Through the lists, the neighbours; where its list expires the grid.
-void Strip::fetch_neighbours(std::uint32_t i) const {
+/// The neighbours of its partner; where its list expires the grid.
+void Strip::fetch_others(std::uint32_t i) const {
   const Record& disk = records_[i];
-  fetch_listed(i);
   if (disk.partner != no_disk)
     fetch_listed(disk.partner);
   else if (disk.next == Next::review && !within_leash(disk, cold_[i], disk.next_time))
@@ -208,13 +224,16 @@ void Strip::check_progress(double t) {
 /// other. The two disks themselves are left out; they have just parted.
 void Strip::on_contact(std::uint32_t i, std::uint32_t j, double t) {
   const Collision result = collision(i, j, t);
+  fetch_listed_ahead();
   const Lanes of_i = first_contacts(i, result.a, j), of_j = first_contacts(j, result.b, i);
   carry_out(result);
   settle(i, of_i);
+  fetch_others_ahead();
   settle(j, of_j);
 }
 
 void Strip::on_kick(std::uint32_t i, double t) {
+  fetch_listed_ahead();
   ColdRecord& cold = cold_[i];
   const Kick kick = next_kick(i, t);
   const Drive& drive = tables_->state.drive;
@@ -296,6 +315,7 @@ double Strip::kick_alone(std::uint32_t i, double t, double px, double py) {
   const double gained = give_momentum(flight, px, py, inverse_mass(records_[i]));
   set_flight(records_[i], flight);
   ++tally_.kicked[records_[i].species];
+  fetch_others_ahead();
   predict(i);
   return gained;
 }
@@ -316,26 +336,32 @@ double Strip::kick_pair(std::uint32_t i, std::uint32_t j, double t, double px, d
   ++tally_.kicked[disk_i.species];
   ++tally_.kicked[disk_j.species];
   settle(i, of_i);
+  fetch_others_ahead();
   settle(j, of_j);
   return gained;
 }
 
 void Strip::on_transit(std::uint32_t i, double t) {
+  fetch_listed_ahead();
   Flight flight(records_[i]);
   advance(flight, cold_[i].image_x, cold_[i].image_y, t, box_);
   set_flight(records_[i], flight);
   ++tally_.transits;
+  fetch_others_ahead();
   if (log) log_event(EventKind::transit, t, i, no_disk);
   predict(i);
 }
 
 /// Looks again for the next contact of disk i, after making its list anew if that has expired.
 void Strip::on_review(std::uint32_t i, double t) {
+  fetch_listed_ahead();
   set_next(records_[i], never, Next::review, no_disk);
-  if (within_leash(records_[i], cold_[i], t)) return predict(i);
-  if (!remake_list(i, t)) [[unlikely]]
+  const bool still_listed = within_leash(records_[i], cold_[i], t);
+  if (!still_listed && !remake_list(i, t)) [[unlikely]]
     return freeze(i, t);
+  fetch_others_ahead();
   predict(i);
+  if (still_listed) return;
   neighbours_.tell_others(i, records_);
 }
 

@@ -141,11 +141,14 @@ class alignas(128) Strip {
   double kick_pair(std::uint32_t i, std::uint32_t j, double t, double px, double py);
   bool remake_list(std::uint32_t i, double t);
   void check_progress(double t);
-  void fetch(unsigned stage, std::uint32_t i);
+  void fetch_ahead();
+  void fetch_within_cache(std::size_t n) const;
+  void fetch_listed_ahead() const;
+  void fetch_others_ahead() const;
   void fetch_disks(std::uint32_t i) const;
   void fetch_disk(std::uint32_t i) const;
   void fetch_listed(std::uint32_t i) const;
-  void fetch_neighbours(std::uint32_t i) const;
+  void fetch_others(std::uint32_t i) const;
   void fetch_grid(const Record& disk) const;
   void fetch_kick_partner(std::uint32_t i);
   void fetch_partners_neighbours(std::uint32_t i) const;
@@ -230,6 +233,7 @@ class alignas(128) Strip {
   Batch batch_{};                           // events that come next, worked out together
   DrawnKicks drawn_kicks_{};                // some that come soon
   double drawn_until_ = -never;             // when the last of them comes
+  std::uint32_t upcoming_ = no_disk;        // whose event is so near that its neighbours are to be fetched
   std::uint32_t likely_partners_[16] = {};  // of kicks that come soon, by slot modulo 16; only for what to fetch
 
   Rows core_;                // the disks that stand here are the strip's own

@@ -46,7 +46,8 @@ struct Tables {
   [[nodiscard]] Zone zone(std::uint32_t row) const { return zones.size() == 0 ? Zone::roomy : zones[row]; }
   Window window;
 
-  bool in_batches = false;  ///< events are worked out several at a time (batch.cc)
+  bool out_of_cache = false;  ///< the records do not fit into the cache
+  bool in_batches = false;    ///< events are worked out several at a time (batch.cc)
 };
 
 }  // namespace SANDGLASS_ISA

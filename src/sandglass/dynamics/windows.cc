@@ -135,9 +135,9 @@ void IsaEngine::divide() {
     const std::uint32_t below = (s == 0 ? middle(n - 1) : middle(s - 1) + side) - wide_lane / 2 + wide_lane;
     const std::uint32_t above = middle(s) + side - wide_lane / 2;
     shifted_[s] = Strip(tables_, {below % side, above - below, side}, reach_, wide_lane);
-    shifted_[s].set_calendar(Calendar(state_.now, window, window / 16, between, out_of_cache()));
+    shifted_[s].set_calendar(Calendar(state_.now, window, window / 16, between, tables_.out_of_cache));
   }
-  whole_.set_calendar(Calendar(state_.now, window, window / 16, between, out_of_cache()));
+  whole_.set_calendar(Calendar(state_.now, window, window / 16, between, tables_.out_of_cache));
   replenish();
   keep();
 }
