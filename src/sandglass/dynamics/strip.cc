@@ -106,7 +106,10 @@ void Strip::hand_in(Tally& tally, Simulation::Bookkeeping& bookkeeping) {
     const Calendar::Coming entry = calendar_.coming(events);
     return entry.time < never ? entry.slot : no_disk;
   };
-  if (const std::uint32_t i = coming(12); i != no_disk) fetch_disks(i);
+  if (const std::uint32_t i = coming(12); i != no_disk) {
+    fetch_disks(i);
+    prefetch(&records_[partner_or_self(i)]);  // says how long the partner's list is
+  }
   upcoming_ = coming(8);
   if (const std::uint32_t i = coming(5); i != no_disk) fetch_kick_partner(i);
   if (const std::uint32_t i = coming(2); i != no_disk) fetch_partners_neighbours(i);
@@ -130,9 +133,8 @@ void Strip::hand_in(Tally& tally, Simulation::Bookkeeping& bookkeeping) {
 
 /// Its cold record with the list, and its partner's.
 void Strip::fetch_disks(std::uint32_t i) const {
-  const std::uint32_t partner = records_[i].partner;
   fetch_disk(i);
-  fetch_disk(partner == no_disk ? i : partner);
+  fetch_disk(partner_or_self(i));
 }
 
 void Strip::fetch_disk(std::uint32_t i) const { prefetch(&cold_[i]); }

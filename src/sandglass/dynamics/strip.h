@@ -143,6 +143,9 @@ class alignas(128) Strip {
   void check_progress(double t);
   void fetch_ahead();
   void fetch_within_cache(std::size_t n) const;
+  [[nodiscard]] std::uint32_t partner_or_self(std::uint32_t i) const {
+    return records_[i].partner == no_disk ? i : records_[i].partner;
+  }
   void fetch_listed_ahead() const;
   void fetch_others_ahead() const;
   void fetch_disks(std::uint32_t i) const;
