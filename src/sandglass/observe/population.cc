@@ -1,5 +1,7 @@
 #include "sandglass/observe/population.h"
 
+#include <algorithm>
+
 namespace sandglass {
 
 std::string group_name(Group group) {
@@ -37,10 +39,15 @@ namespace {
 // Sorts one component and subtracts its mass-weighted mean.
 void take_component(const std::vector<double>& by_id, const Population& population, std::vector<double>& sorted) {
   sorted.resize(population.size());
-  for (std::size_t i = 0; i < sorted.size(); ++i) sorted[i] = by_id[population.order[i]];
   double moment = 0, mass = 0;
   for (const Species species : {small, big}) {
     const Range range = population.range(species);
+    if (range.size() == 0) continue;
+    const std::uint32_t first = population.order[range.begin];
+    if (population.order[range.end - 1] - first == range.size() - 1)  // ids in a row, as in most systems
+      std::copy_n(by_id.begin() + first, range.size(), sorted.begin() + static_cast<std::ptrdiff_t>(range.begin));
+    else
+      for (std::size_t i = range.begin; i < range.end; ++i) sorted[i] = by_id[population.order[i]];
     const double m = population.mixture.mass[species];
     moment += m * ordered_sum({sorted.data() + range.begin, range.size()});
     mass += m * static_cast<double>(range.size());
