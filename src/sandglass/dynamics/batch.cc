@@ -350,8 +350,8 @@ bool Strip::run_batch() {
     set_next(disk, never, Next::review, no_disk);
     cold[i].last_contact = t;
     if ((batch.wrapped >> lane & 1) != 0) [[unlikely]] {
-      cold[i].image_x += static_cast<std::int32_t>(batch.image_x[lane]);
-      cold[i].image_y += static_cast<std::int32_t>(batch.image_y[lane]);
+      images_[i].x += static_cast<std::int32_t>(batch.image_x[lane]);
+      images_[i].y += static_cast<std::int32_t>(batch.image_y[lane]);
     }
   };
   // `settle`, without branches where it cannot be foretold which way they go

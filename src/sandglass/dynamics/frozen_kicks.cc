@@ -52,7 +52,7 @@ void Strip::run_window() {
 void Strip::expect_kick(std::uint32_t frozen_disk) {
   const double next_kick = cold_[frozen_disk].next_kick;
   if (tables_->state.drive.kind != DriveKind::pair || next_kick > tables_->window.end) return;
-  frozen_kicks_.push_back({next_kick, kick_counts_[frozen_disk] + 1, frozen_disk});
+  frozen_kicks_.push_back({next_kick, cold_[frozen_disk].kick_count + 1, frozen_disk});
   std::push_heap(frozen_kicks_.begin(), frozen_kicks_.end());
   end_ = std::fmin(end_, std::nextafter(next_kick, -never));
 }

@@ -73,7 +73,7 @@ class IsaEngine final : public Engine {
     Record record;
     double last_contact, next_kick;
     std::uint64_t kick_count;
-    std::int32_t image_x, image_y;
+    Image image;
   };
   Array<KeptDisk> kept_;  // the disks some windows ago
   Tally kept_tally_;

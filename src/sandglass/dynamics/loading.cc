@@ -14,7 +14,7 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
     tables_.records = Array<Record>(size + 1);
     tables_.cold = Array<ColdRecord>(size);
     tables_.ids = Array<std::uint32_t>(size);
-    tables_.kick_counts = Array<std::uint64_t>(size);
+    tables_.images = Array<Image>(size);
     // Fills the empty places of neighbour lists: every contact would come after what it has next.
     tables_.records[size] = {0, 0, 0, 0, 0, nobodys, 0, no_disk, Next::review, small, false, true, 0};
   }
@@ -27,10 +27,9 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
                        .centre = {},
                        .last_contact = disk.last_contact,
                        .next_kick = disk.next_kick,
-                       .image_x = disk.image_x,
-                       .image_y = disk.image_y};
+                       .kick_count = disk.kick_count};
     tables_.ids[i] = order[i];
-    tables_.kick_counts[i] = disk.kick_count;
+    tables_.images[i] = {disk.image_x, disk.image_y};
   }
   state_.disks = std::vector<Disk>();  // gives the memory back
   windows_done_ = undone_ = 0;
@@ -163,9 +162,9 @@ void IsaEngine::store(Disk* disks) const {
     disk.time = record.time;
     disk.last_contact = cold.last_contact;
     disk.next_kick = cold.next_kick;
-    disk.kick_count = tables_.kick_counts[i];
-    disk.image_x = cold.image_x;
-    disk.image_y = cold.image_y;
+    disk.kick_count = cold.kick_count;
+    disk.image_x = tables_.images[i].x;
+    disk.image_y = tables_.images[i].y;
     disk.species = record.species;
   }
 }
@@ -178,13 +177,12 @@ void IsaEngine::make_frame(double* x, double* y, double* vx, double* vy) {
   }
   constexpr std::size_t ahead = 16;
   for (std::size_t id = 0; id < tables_.size; ++id) {
-    if (id + ahead < tables_.size)
-      prefetch(&tables_.records[slots_[id + ahead]]), prefetch(&tables_.cold[slots_[id + ahead]]);
+    if (id + ahead < tables_.size) prefetch(&tables_.records[slots_[id + ahead]]);
     const Record& record = tables_.records[slots_[id]];
-    const ColdRecord& cold = tables_.cold[slots_[id]];
+    const Image image = tables_.images[slots_[id]];
     const double flight = state_.now - record.time;
-    x[id] = record.x + record.vx * flight + cold.image_x * tables_.box.length;
-    y[id] = record.y + record.vy * flight + cold.image_y * tables_.box.length;
+    x[id] = record.x + record.vx * flight + image.x * tables_.box.length;
+    y[id] = record.y + record.vy * flight + image.y * tables_.box.length;
     vx[id] = record.vx;
     vy[id] = record.vy;
   }

@@ -70,9 +70,14 @@ struct alignas(64) ColdRecord {
   std::uint32_t listed[listed_here];  ///< slots of its neighbours; the rest of a longer list is elsewhere (Neighbours)
   FixedPoint centre;                  ///< where the disk stood when its list was made
   double last_contact, next_kick;
-  std::int32_t image_x, image_y;
+  std::uint64_t kick_count;
 };
 static_assert(sizeof(ColdRecord) == 64);
+
+/// In how many boxes to the right of the first, and above, the disk is. Changes so rarely that it stands apart.
+struct Image {
+  std::int32_t x, y;
+};
 
 }  // namespace SANDGLASS_ISA
 }  // namespace sandglass

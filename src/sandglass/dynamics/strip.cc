@@ -21,7 +21,7 @@ Strip::Strip(Tables& tables)
       records_(tables.records.begin()),
       cold_(tables.cold.begin()),
       ids_(tables.ids.begin()),
-      kick_counts_(tables.kick_counts.begin()),
+      images_(tables.images.begin()),
       box_(tables.box),
       law_(tables.state.collision),
       leash_{tables.leash[false], tables.leash[true]},
@@ -187,31 +187,27 @@ void Strip::check_progress(double t) {
   until_stall_check_ = (std::uint64_t{1} << 20) + 64 * tables_->size;
 }
 
-/// The collision of two disks at time t, worked out but not carried out.
-[[gnu::always_inline]] inline Strip::Collision Strip::collision(std::uint32_t i, std::uint32_t j, double t) const {
+/// The collision of two disks at time t, worked out but, their images apart, not carried out.
+[[gnu::always_inline]] inline Strip::Collision Strip::collision(std::uint32_t i, std::uint32_t j, double t) {
   const ColdRecord &cold_a = cold_[i], &cold_b = cold_[j];
   Collision result{i,
                    j,
                    Flight(records_[i]),
                    Flight(records_[j]),
-                   {cold_a.image_x, cold_a.image_y},
-                   {cold_b.image_x, cold_b.image_y},
                    {},
                    elastic_by_tc(law_, t, cold_a.last_contact, cold_b.last_contact)};
-  advance(result.a, result.image_a.x, result.image_a.y, t, box_);
-  advance(result.b, result.image_b.x, result.image_b.y, t, box_);
+  advance(result.a, images_[i].x, images_[i].y, t, box_);
+  advance(result.b, images_[j].x, images_[j].y, t, box_);
   const PairMasses& masses = masses_[records_[i].species][records_[j].species];
   result.impact = collide(result.a, result.b, masses, result.elastic ? 1.0 : law_.restitution, box_);
   return result;
 }
 
 [[gnu::always_inline]] inline void Strip::carry_out(const Collision& result) {
-  const auto [i, j, a, b, image_a, image_b, impact, elastic] = result;
+  const auto [i, j, a, b, impact, elastic] = result;
   ColdRecord &cold_a = cold_[i], &cold_b = cold_[j];
   set_flight(records_[i], a);
   set_flight(records_[j], b);
-  cold_a.image_x = image_a.x, cold_a.image_y = image_a.y;
-  cold_b.image_x = image_b.x, cold_b.image_y = image_b.y;
   cold_a.last_contact = cold_b.last_contact = a.time;
 
   ++tally_.contacts[records_[i].species + records_[j].species];
@@ -245,7 +241,7 @@ void Strip::on_kick(std::uint32_t i, double t) {
     j = drive.partner == PartnerRule::within ? partner_within_reach(i, t, kick) : nearest_partner(i, t);
     if (j == undecided) return freeze(i, t);
   }
-  ++kick_counts_[i];
+  ++cold_[i].kick_count;
   cold.next_kick = t + kick.wait / clock_rate(drive);
   enter_next_kick(i);
   if (log) [[unlikely]]
@@ -262,7 +258,7 @@ void Strip::on_kick(std::uint32_t i, double t) {
 
 /// The next kick of disk i, which comes at time t. Most often it has been drawn already.
 Kick Strip::next_kick(std::uint32_t i, double t) {
-  const std::uint64_t count = kick_counts_[i] + 1;
+  const std::uint64_t count = cold_[i].kick_count + 1;
   if (t > drawn_until_) draw_kicks(i, t);
   const unsigned lanes = equal_lanes(drawn_kicks_.slot, i);
   const auto n = static_cast<unsigned>(__builtin_ctz(lanes | 1u << 31)) % DrawnKicks::size;
@@ -277,7 +273,7 @@ void Strip::draw_kicks(std::uint32_t i, double t) {
   DrawnKicks& drawn = drawn_kicks_;
   std::uint32_t size = 0;
   auto add = [&](std::uint32_t slot, double time) {
-    drawn.slot[size] = slot, drawn.id[size] = ids_[slot], drawn.count[size] = kick_counts_[slot] + 1;
+    drawn.slot[size] = slot, drawn.id[size] = ids_[slot], drawn.count[size] = cold_[slot].kick_count + 1;
     ++size;
     drawn_until_ = time;
     fetch_disk(slot);
@@ -313,7 +309,7 @@ void Strip::enter_kick_again(std::uint32_t i) {
 /// Gives momentum to disk i at time t; returns the energy gained.
 double Strip::kick_alone(std::uint32_t i, double t, double px, double py) {
   Flight flight(records_[i]);
-  advance(flight, cold_[i].image_x, cold_[i].image_y, t, box_);
+  advance(flight, images_[i].x, images_[i].y, t, box_);
   const double gained = give_momentum(flight, px, py, inverse_mass(records_[i]));
   set_flight(records_[i], flight);
   ++tally_.kicked[records_[i].species];
@@ -327,8 +323,8 @@ double Strip::kick_alone(std::uint32_t i, double t, double px, double py) {
 double Strip::kick_pair(std::uint32_t i, std::uint32_t j, double t, double px, double py) {
   Record &disk_i = records_[i], &disk_j = records_[j];
   Flight a(disk_i), b(disk_j);
-  advance(a, cold_[i].image_x, cold_[i].image_y, t, box_);
-  advance(b, cold_[j].image_x, cold_[j].image_y, t, box_);
+  advance(a, images_[i].x, images_[i].y, t, box_);
+  advance(b, images_[j].x, images_[j].y, t, box_);
   const double gained =
       give_momentum(a, px, py, inverse_mass(disk_i)) + give_momentum(b, -px, -py, inverse_mass(disk_j));
   const Lanes of_i = first_contacts(i, a, j, b), of_j = first_contacts(j, b, i, a);
@@ -346,7 +342,7 @@ double Strip::kick_pair(std::uint32_t i, std::uint32_t j, double t, double px, d
 void Strip::on_transit(std::uint32_t i, double t) {
   fetch_listed_ahead();
   Flight flight(records_[i]);
-  advance(flight, cold_[i].image_x, cold_[i].image_y, t, box_);
+  advance(flight, images_[i].x, images_[i].y, t, box_);
   set_flight(records_[i], flight);
   ++tally_.transits;
   fetch_others_ahead();

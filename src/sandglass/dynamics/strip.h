@@ -85,13 +85,9 @@ class alignas(128) Strip {
  private:
   friend struct PredictionPerf;  // measures the search (prediction.perf.cc)
 
-  struct Image {
-    std::int32_t x, y;
-  };
   struct Collision {
     std::uint32_t i, j;
     Flight a, b;  // after it
-    Image image_a, image_b;
     Impact impact;
     bool elastic;  // by the TC model
   };
@@ -131,7 +127,7 @@ class alignas(128) Strip {
   void on_kick(std::uint32_t i, double t);
   void on_transit(std::uint32_t i, double t);
   void on_review(std::uint32_t i, double t);
-  [[nodiscard]] Collision collision(std::uint32_t i, std::uint32_t j, double t) const;
+  [[nodiscard]] Collision collision(std::uint32_t i, std::uint32_t j, double t);
   void carry_out(const Collision& result);
   [[nodiscard]] Kick next_kick(std::uint32_t i, double t);
   void draw_kicks(std::uint32_t i, double t);
@@ -218,7 +214,7 @@ class alignas(128) Strip {
   Record* records_ = nullptr;
   ColdRecord* cold_ = nullptr;
   const std::uint32_t* ids_ = nullptr;
-  std::uint64_t* kick_counts_ = nullptr;
+  Image* images_ = nullptr;
   Box box_{1, {}};
   PairMasses masses_[species_count][species_count];
   CollisionLaw law_;

@@ -32,7 +32,7 @@ struct Tables {
   Array<Record> records;  ///< one more than there are disks: it fills up lists
   Array<ColdRecord> cold;
   Array<std::uint32_t> ids;
-  Array<std::uint64_t> kick_counts;
+  Array<Image> images;
   NeighbourTable neighbours;
   /// How far a disk may move from the centre of its list: half the skin where it is roomy (true); less by half the way
   /// of a frozen disk where one may come.

@@ -237,8 +237,7 @@ void IsaEngine::keep() {
   crew->work(strips_, [&](unsigned s) {
     for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i) {
       const ColdRecord& cold = tables_.cold[i];
-      kept_[i] = {tables_.records[i],     cold.last_contact, cold.next_kick,
-                  tables_.kick_counts[i], cold.image_x,      cold.image_y};
+      kept_[i] = {tables_.records[i], cold.last_contact, cold.next_kick, cold.kick_count, tables_.images[i]};
     }
     first_[s].remake_calendar();
     shifted_[s].clear_outbox();
@@ -267,9 +266,9 @@ void IsaEngine::undo(double start, double end) {
     const KeptDisk& kept = kept_[i];
     ColdRecord& cold = tables_.cold[i];
     tables_.records[i] = kept.record;
-    tables_.kick_counts[i] = kept.kick_count;
+    tables_.images[i] = kept.image;
     cold.last_contact = kept.last_contact, cold.next_kick = kept.next_kick;
-    cold.image_x = kept.image_x, cold.image_y = kept.image_y;
+    cold.kick_count = kept.kick_count;
   }
   state_.tally = kept_tally_;
   state_.now = kept_now_;
