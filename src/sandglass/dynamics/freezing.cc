@@ -169,9 +169,30 @@ void Strip::check_speed(const Record& disk) {
   end_ = tables_->window.start;  // stops the loop
 }
 
+/// Calls visit(n) for every n below `size`; slot(n) is the disk it is about, whose records are fetched ahead.
+template <class Slot, class Visit>
+[[gnu::always_inline]] inline void Strip::visit(std::size_t size, Slot&& slot, Visit&& visit) {
+  constexpr std::size_t ahead = 16;
+  for (std::size_t n = 0; n < size; ++n) {
+    if (n + ahead < size) prefetch(&records_[slot(n + ahead)]), fetch_disk(slot(n + ahead));
+    visit(n);
+  }
+}
+
+/// Calls visit(slot) for every disk in these rows.
+template <class Visit>
+[[gnu::always_inline]] inline void Strip::visit(Rows rows, Visit&& visit_disk) {
+  for (std::uint32_t n = 0; n < rows.count; ++n) {
+    in_row_.clear();
+    neighbours_.grid().visit_rows((rows.first + n) % rows.side, 1, [this](std::uint32_t i) { in_row_.push_back(i); });
+    visit(
+        in_row_.size(), [this](std::size_t k) { return in_row_[k]; }, [&](std::size_t k) { visit_disk(in_row_[k]); });
+  }
+}
+
 void Strip::freeze_rows(Rows rows) {
   begin_pass();
-  neighbours_.grid().visit_rows(rows.first, rows.count, [&](std::uint32_t i) {
+  visit(rows, [&](std::uint32_t i) {
     set_next(records_[i], frozen_after(0), Next::freeze, no_disk);
     records_[i].concerned = true;
     left_.push_back({i, row(i)});
@@ -200,13 +221,13 @@ void Strip::first_pass() {
   };
   const std::uint32_t lower = core_.count < reach_ ? core_.count : reach_;
   const std::uint32_t upper = core_.count - lower < reach_ ? core_.count - lower : reach_;
-  neighbours_.grid().visit_rows(core_.first, lower, look_out);
-  neighbours_.grid().visit_rows((core_.first + core_.count - upper) % core_.side, upper, look_out);
+  visit({core_.first, lower, core_.side}, look_out);
+  visit({(core_.first + core_.count - upper) % core_.side, upper, core_.side}, look_out);
   if (tables_->state.drive.kind == DriveKind::pair) {  // of the lanes, half belongs to this strip
     auto expect = [this](std::uint32_t i) { expect_kick(i); };
-    neighbours_.grid().visit_rows((core_.first + core_.count) % core_.side, lane_ - lane_ / 2, expect);
-    neighbours_.grid().visit_rows((core_.first + core_.side - (lane_ - lane_ / 2)) % core_.side, lane_ - lane_ / 2,
-                                  expect);
+    const std::uint32_t half = lane_ - lane_ / 2;
+    visit({(core_.first + core_.count) % core_.side, half, core_.side}, expect);
+    visit({(core_.first + core_.side - half) % core_.side, half, core_.side}, expect);
   }
   run_window();
   end_pass();
@@ -227,7 +248,7 @@ void Strip::resume(const Strip& other) {
     return Rows{(core_.first + core_.side - rows) % core_.side, core_.count + 2 * rows, core_.side};
   };
   const Rows met = beyond(reach_), kicking = beyond(lane_ - lane_ / 2);  // half of a lane belongs to this strip
-  for (const Left& disk : other.left_) {
+  auto take = [&](const Left& disk) {
     if (!whole_ && !core_.hold(disk.row)) {
       if (met.hold(disk.row)) frozen_about_ = true;
       if (kicking.hold(disk.row)) expect_kick(disk.slot);
@@ -237,7 +258,10 @@ void Strip::resume(const Strip& other) {
       enter_next_kick(disk.slot);
       ++resumed_;
     }
-  }
+  };
+  const auto& left = other.left_;
+  visit(
+      left.size(), [&](std::size_t n) { return left[n].slot; }, [&](std::size_t n) { take(left[n]); });
 }
 
 /// All disks that take part are concerned: their speed is checked at every event. The others are done with this window;
@@ -262,13 +286,17 @@ void Strip::end_pass() {
 void Strip::remake_calendar() {
   calendar_.clear();
   neighbours_.refresh();
-  neighbours_.grid().visit_rows(core_.first, core_.count, [this](std::uint32_t i) { enter_calendar(i); });
+  visit(core_, [this](std::uint32_t i) { enter_calendar(i); });
 }
 
 void Strip::take_over(const Strip& other) {
-  for (const Entry& entry : other.outbox_)
+  const auto& outbox = other.outbox_;
+  auto take = [&](const Entry& entry) {
     if (owns(entry.slot) && (records_[entry.slot].next_time == entry.time || cold_[entry.slot].next_kick == entry.time))
       calendar_.push(entry.time, entry.slot);
+  };
+  visit(
+      outbox.size(), [&](std::size_t n) { return outbox[n].slot; }, [&](std::size_t n) { take(outbox[n]); });
 }
 
 }  // namespace SANDGLASS_ISA

@@ -183,6 +183,10 @@ class alignas(128) Strip {
 
   void begin_pass();
   void end_pass();
+  template <class Visit>
+  void visit(Rows rows, Visit&& visit);
+  template <class Slot, class Visit>
+  void visit(std::size_t size, Slot&& slot, Visit&& visit);
   void freeze(std::uint32_t i, double t);
   void freeze_no_later(std::uint32_t i, double t);
   [[nodiscard]] double freezing_time(std::uint32_t i);
@@ -246,6 +250,7 @@ class alignas(128) Strip {
   bool too_deep_ = false;                  // because one would be frozen farther from the lanes than expected
   GrowingArray<FrozenKick> frozen_kicks_;  // a heap
   GrowingArray<std::uint32_t> suspects_;   // may be nearest to a frozen disk that kicks
+  GrowingArray<std::uint32_t> in_row_;     // for visit
   GrowingArray<Left> left_;                // frozen in this pass
   GrowingArray<std::uint32_t> concerned_;  // in this pass
   std::uint32_t resumed_ = 0;              // frozen in an earlier pass, not in this one
