@@ -43,7 +43,7 @@ class Engine {
   /// How many threads it uses, once loaded.
   [[nodiscard]] virtual unsigned threads() const = 0;
 
-  virtual void make_frame(double* x, double* y, double* vx, double* vy) = 0;
+  virtual void make_frame(double* x, double* y, double* vx, double* vy) const = 0;
 
   std::vector<Event>* log = nullptr;
   Crew* crew = nullptr;  ///< where several threads may be used

@@ -21,7 +21,7 @@ class IsaEngine final : public Engine {
   void run(double end) override;
   Inspection inspect() override;
   [[nodiscard]] unsigned threads() const override { return strips_; }
-  void make_frame(double* x, double* y, double* vx, double* vy) override;
+  void make_frame(double* x, double* y, double* vx, double* vy) const override;
 
  private:
   friend struct PredictionPerf;  // measures the search (prediction.perf.cc)
@@ -54,7 +54,6 @@ class IsaEngine final : public Engine {
   State& state_;
   Tuning tuning_;
   Tables tables_;
-  Array<std::uint32_t> slots_;  // by id; only since a frame was made
   Strip whole_;
 
   // Where several threads work (windows.cc):

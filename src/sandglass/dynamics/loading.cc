@@ -9,7 +9,6 @@ inline namespace SANDGLASS_ISA {
 OverlappingPair IsaEngine::load(const std::uint32_t* order) {
   const std::size_t size = state_.disks.size();
   tables_.size = size;
-  slots_ = {};
   if (tables_.cold.size() != size) {
     tables_.records = Array<Record>(size + 1);
     tables_.cold = Array<ColdRecord>(size);
@@ -169,17 +168,11 @@ void IsaEngine::store(Disk* disks) const {
   }
 }
 
-/// In order of ids: what is read can be fetched ahead, what is written is in a row.
-void IsaEngine::make_frame(double* x, double* y, double* vx, double* vy) {
-  if (slots_.size() == 0) {
-    slots_ = Array<std::uint32_t>(tables_.size);
-    for (std::uint32_t i = 0; i < tables_.size; ++i) slots_[tables_.ids[i]] = i;
-  }
-  constexpr std::size_t ahead = 16;
-  for (std::size_t id = 0; id < tables_.size; ++id) {
-    if (id + ahead < tables_.size) prefetch(&tables_.records[slots_[id + ahead]]);
-    const Record& record = tables_.records[slots_[id]];
-    const Image image = tables_.images[slots_[id]];
+void IsaEngine::make_frame(double* x, double* y, double* vx, double* vy) const {
+  for (std::size_t i = 0; i < tables_.size; ++i) {
+    const Record& record = tables_.records[i];
+    const Image image = tables_.images[i];
+    const std::uint32_t id = tables_.ids[i];
     const double flight = state_.now - record.time;
     x[id] = record.x + record.vx * flight + image.x * tables_.box.length;
     y[id] = record.y + record.vy * flight + image.y * tables_.box.length;

@@ -1,7 +1,5 @@
 #include "sandglass/observe/population.h"
 
-#include <algorithm>
-
 namespace sandglass {
 
 std::string group_name(Group group) {
@@ -39,21 +37,28 @@ namespace {
 // Sorts one component and subtracts its mass-weighted mean.
 void take_component(const std::vector<double>& by_id, const Population& population, std::vector<double>& sorted) {
   sorted.resize(population.size());
+  // Most often the ids of a species are in a row: nothing is to be sorted.
+  auto values_of = [&](Range range) -> const double* {
+    if (range.size() == 0) return nullptr;
+    const std::uint32_t first = population.order[range.begin], last = population.order[range.end - 1];
+    if (last - first == range.size() - 1) return &by_id[first];
+    for (std::size_t i = range.begin; i < range.end; ++i) sorted[i] = by_id[population.order[i]];
+    return &sorted[range.begin];
+  };
+  const double* values[species_count];
   double moment = 0, mass = 0;
   for (const Species species : {small, big}) {
     const Range range = population.range(species);
-    if (range.size() == 0) continue;
-    const std::uint32_t first = population.order[range.begin];
-    if (population.order[range.end - 1] - first == range.size() - 1)  // ids in a row, as in most systems
-      std::copy_n(by_id.begin() + first, range.size(), sorted.begin() + static_cast<std::ptrdiff_t>(range.begin));
-    else
-      for (std::size_t i = range.begin; i < range.end; ++i) sorted[i] = by_id[population.order[i]];
+    values[species] = values_of(range);
     const double m = population.mixture.mass[species];
-    moment += m * ordered_sum({sorted.data() + range.begin, range.size()});
+    moment += m * ordered_sum({values[species], range.size()});
     mass += m * static_cast<double>(range.size());
   }
   const double mean = moment / mass;
-  for (double& value : sorted) value -= mean;
+  for (const Species species : {small, big}) {
+    const Range range = population.range(species);
+    for (std::size_t i = 0; i < range.size(); ++i) sorted[range.begin + i] = values[species][i] - mean;
+  }
 }
 
 }  // namespace
