@@ -22,7 +22,6 @@ void pop_and_push(benchmark::State& state, const double* leads, std::size_t size
     if (++drawn == size) drawn = 0;
   };
   auto in_order = [](std::uint32_t a, std::uint32_t b) { return a < b; };
-
   auto next = [&] {
     const std::uint32_t slot = calendar.pop(&records[0], std::numeric_limits<double>::infinity(), in_order);
     prefetch(&records[calendar.coming(8).slot]);  // the engine has more to fetch

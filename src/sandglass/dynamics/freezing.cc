@@ -169,24 +169,16 @@ void Strip::check_speed(const Record& disk) {
   end_ = tables_->window.start;  // stops the loop
 }
 
-/// Calls visit(n) for every n below `size`; slot(n) is the disk it is about, whose records are fetched ahead.
-template <class Slot, class Visit>
-[[gnu::always_inline]] inline void Strip::visit(std::size_t size, Slot&& slot, Visit&& visit) {
-  constexpr std::size_t ahead = 16;
-  for (std::size_t n = 0; n < size; ++n) {
-    if (n + ahead < size) prefetch(&records_[slot(n + ahead)]), fetch_disk(slot(n + ahead));
-    visit(n);
-  }
-}
-
 /// Calls visit(slot) for every disk in these rows.
 template <class Visit>
-[[gnu::always_inline]] inline void Strip::visit(Rows rows, Visit&& visit_disk) {
+[[gnu::always_inline]] inline void Strip::visit(Rows rows, Visit&& visit) {
   for (std::uint32_t n = 0; n < rows.count; ++n) {
     in_row_.clear();
     neighbours_.grid().visit_rows((rows.first + n) % rows.side, 1, [this](std::uint32_t i) { in_row_.push_back(i); });
-    visit(
-        in_row_.size(), [this](std::size_t k) { return in_row_[k]; }, [&](std::size_t k) { visit_disk(in_row_[k]); });
+    for (std::size_t k = 0; k < in_row_.size(); ++k) {
+      if (k + visits_ahead < in_row_.size()) fetch_visited(in_row_[k + visits_ahead]);
+      visit(in_row_[k]);
+    }
   }
 }
 
@@ -248,20 +240,20 @@ void Strip::resume(const Strip& other) {
     return Rows{(core_.first + core_.side - rows) % core_.side, core_.count + 2 * rows, core_.side};
   };
   const Rows met = beyond(reach_), kicking = beyond(lane_ - lane_ / 2);  // half of a lane belongs to this strip
-  auto take = [&](const Left& disk) {
-    if (!whole_ && !core_.hold(disk.row)) {
-      if (met.hold(disk.row)) frozen_about_ = true;
-      if (kicking.hold(disk.row)) expect_kick(disk.slot);
-    } else if (is_frozen(records_[disk.slot])) {
-      set_next(records_[disk.slot], never, Next::review, no_disk);
-      concerned_.push_back(disk.slot);
-      enter_next_kick(disk.slot);
+  const auto& left = other.left_;
+  for (std::size_t n = 0; n < left.size(); ++n) {
+    if (n + visits_ahead < left.size()) fetch_visited(left[n + visits_ahead].slot);
+    const auto [slot, row] = left[n];
+    if (!whole_ && !core_.hold(row)) {
+      if (met.hold(row)) frozen_about_ = true;
+      if (kicking.hold(row)) expect_kick(slot);
+    } else if (is_frozen(records_[slot])) {
+      set_next(records_[slot], never, Next::review, no_disk);
+      concerned_.push_back(slot);
+      enter_next_kick(slot);
       ++resumed_;
     }
-  };
-  const auto& left = other.left_;
-  visit(
-      left.size(), [&](std::size_t n) { return left[n].slot; }, [&](std::size_t n) { take(left[n]); });
+  }
 }
 
 /// All disks that take part are concerned: their speed is checked at every event. The others are done with this window;
@@ -291,12 +283,11 @@ void Strip::remake_calendar() {
 
 void Strip::take_over(const Strip& other) {
   const auto& outbox = other.outbox_;
-  auto take = [&](const Entry& entry) {
-    if (owns(entry.slot) && (records_[entry.slot].next_time == entry.time || cold_[entry.slot].next_kick == entry.time))
-      calendar_.push(entry.time, entry.slot);
-  };
-  visit(
-      outbox.size(), [&](std::size_t n) { return outbox[n].slot; }, [&](std::size_t n) { take(outbox[n]); });
+  for (std::size_t n = 0; n < outbox.size(); ++n) {
+    if (n + visits_ahead < outbox.size()) fetch_visited(outbox[n + visits_ahead].slot);
+    const auto [time, slot] = outbox[n];
+    if (owns(slot) && (records_[slot].next_time == time || cold_[slot].next_kick == time)) calendar_.push(time, slot);
+  }
 }
 
 }  // namespace SANDGLASS_ISA

@@ -241,7 +241,7 @@ void Strip::on_kick(std::uint32_t i, double t) {
     j = drive.partner == PartnerRule::within ? partner_within_reach(i, t, kick) : nearest_partner(i, t);
     if (j == undecided) return freeze(i, t);
   }
-  ++cold_[i].kick_count;
+  ++cold.kick_count;
   cold.next_kick = t + kick.wait / clock_rate(drive);
   enter_next_kick(i);
   if (log) [[unlikely]]

@@ -185,8 +185,8 @@ class alignas(128) Strip {
   void end_pass();
   template <class Visit>
   void visit(Rows rows, Visit&& visit);
-  template <class Slot, class Visit>
-  void visit(std::size_t size, Slot&& slot, Visit&& visit);
+  static constexpr std::size_t visits_ahead = 16;
+  void fetch_visited(std::uint32_t i) const { prefetch(&records_[i]), prefetch(&cold_[i]); }
   void freeze(std::uint32_t i, double t);
   void freeze_no_later(std::uint32_t i, double t);
   [[nodiscard]] double freezing_time(std::uint32_t i);
