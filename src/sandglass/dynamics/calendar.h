@@ -154,7 +154,7 @@ class Calendar {
   /// A run of entries of one later window. Packed; how far it is full, and which chunk was filled before, stand
   /// elsewhere (chains_, nexts_): appending writes to it, and walking a chain passes it, without waiting for it.
   struct alignas(64) Chunk {
-    static constexpr std::uint32_t capacity = 21, entry_bytes = 12;
+    static constexpr std::uint32_t capacity = 85, entry_bytes = 12;
     unsigned char entries[capacity * entry_bytes];
 
     [[gnu::always_inline]] void write(std::uint32_t i, double time, std::uint32_t slot) {
@@ -172,12 +172,16 @@ class Calendar {
       return slot;
     }
   };
-  static_assert(sizeof(Chunk) == 256);
+  static_assert(sizeof(Chunk) == 1024);
 
   /// The end of a chain: its last chunk and how many entries that holds; a chain without chunks is "full".
-  static constexpr std::uint32_t no_chunks = none << 5 | Chunk::capacity;
-  static std::uint32_t chunk_of(std::uint32_t end) { return end >> 5 == none >> 5 ? none : end >> 5; }
-  static std::uint32_t count_of(std::uint32_t end) { return end & 31; }
+  static constexpr unsigned count_bits = 7;
+  static_assert(Chunk::capacity < 1u << count_bits);
+  static constexpr std::uint32_t no_chunks = none << count_bits | Chunk::capacity;
+  static std::uint32_t chunk_of(std::uint32_t end) {
+    return end >> count_bits == none >> count_bits ? none : end >> count_bits;
+  }
+  static std::uint32_t count_of(std::uint32_t end) { return end & ((1u << count_bits) - 1); }
 
   [[gnu::always_inline]] std::int64_t window_of(double time) const {
     const double window = (time - start_) * inverse_width_;
@@ -257,8 +261,8 @@ class Calendar {
   [[gnu::always_inline]] void append(std::size_t chain, double time, std::uint32_t slot) {
     std::uint32_t& end = chains_[chain];
     if (count_of(end) == Chunk::capacity) [[unlikely]]
-      end = new_chunk(chunk_of(end)) << 5;
-    chunks_[end >> 5].write(count_of(end), time, slot);
+      end = new_chunk(chunk_of(end)) << count_bits;
+    chunks_[end >> count_bits].write(count_of(end), time, slot);
     ++end;
   }
 
