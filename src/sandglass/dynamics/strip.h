@@ -186,7 +186,7 @@ class alignas(128) Strip {
   template <class Visit>
   void visit(Rows rows, Visit&& visit);
   static constexpr std::size_t visits_ahead = 16;
-  void fetch_visited(std::uint32_t i) const { prefetch(&records_[i]), prefetch(&cold_[i]); }
+  void fetch_visited(std::uint32_t i) const { prefetch(&records_[i]), fetch_disk(i); }
   void freeze(std::uint32_t i, double t);
   void freeze_no_later(std::uint32_t i, double t);
   [[nodiscard]] double freezing_time(std::uint32_t i);
