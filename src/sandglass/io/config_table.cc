@@ -312,7 +312,7 @@ const std::vector<Key>& config_table() {
       key<&C::observe, &C::Observe::structure_frames>(
           {.name = "observe.structure_frames",
            .description = "Frames, evenly spaced, of which g(r), S(k), bond order and velocity structure are taken; "
-                          "`auto`: 5 to 20, one per 1000 collisions of a disk; 0: none.",
+                          "`auto`: 5 to 20, one per 1500 collisions of a disk; 0: none.",
            .range = {0, 1e6},
            .words = {"auto"}}),
       key<&C::observe, &C::Observe::bin_width>(

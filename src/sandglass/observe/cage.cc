@@ -16,7 +16,8 @@ Cages cages_of(const Snapshot& snapshot, const Population& population) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   Cages cages;
   cages.first.assign(n + 1, 0);
-  cells.for_each_pair(range, [&](std::uint32_t i, std::uint32_t j, double, double, double squared) {
+  cells.for_each_pair(range, [&](std::size_t a, std::size_t b, double squared) {
+    const std::uint32_t i = cells.order()[a], j = cells.order()[b];
     const double reach = neighbour_reach * (radius[species(i)] + radius[species(j)]);
     if (squared >= reach * reach) return;
     pairs.emplace_back(i, j);

@@ -25,8 +25,11 @@ class Cells {
   /// distance; infinity when these are all disks there are.
   double collect(std::uint32_t id, int rings, std::vector<Neighbour>& found) const;
 
-  /// Calls visit(id, other, dx, dy, dx^2 + dy^2) once for every pair of disks closer than `range` <= L/2; (dx, dy) is
-  /// the nearest image of `other` from `id`. The order of the pairs is a function of the positions alone.
+  /// The disks from cell to cell. Who is near whom stands near each other in it.
+  [[nodiscard]] std::span<const std::uint32_t> order() const { return sorted_; }
+
+  /// Calls visit(a, b, (distance)^2) once for every pair of disks closer than `range` <= L/2, order()[a] and order()[b],
+  /// at their nearest images. The order of the pairs is a function of the positions alone.
   template <class Visit>
   void for_each_pair(double range, Visit&& visit) const;
 
@@ -47,8 +50,8 @@ void Cells::for_each_pair(double range, Visit&& visit) const {
   const double squared_range = range * range;
   // Who is in range cannot be foretold: gathered first, without a branch, then visited.
   struct Near {
-    std::uint32_t id;
-    double dx, dy, squared;
+    std::size_t place;
+    double squared;
   };
   std::array<Near, 64> near;
   const auto between = [&](std::size_t a, std::size_t begin, std::size_t end, double shift_x, double shift_y) {
@@ -58,10 +61,10 @@ void Cells::for_each_pair(double range, Visit&& visit) const {
       std::size_t count = 0;
       for (; begin < stop; ++begin) {
         const double dx = sorted_x_[begin] - x, dy = sorted_y_[begin] - y, squared = dx * dx + dy * dy;
-        near[count] = {sorted_[begin], dx, dy, squared};
+        near[count] = {begin, squared};
         count += squared < squared_range ? 1 : 0;
       }
-      for (std::size_t k = 0; k < count; ++k) visit(sorted_[a], near[k].id, near[k].dx, near[k].dy, near[k].squared);
+      for (std::size_t k = 0; k < count; ++k) visit(a, near[k].place, near[k].squared);
     }
   };
   const int rings = static_cast<int>(std::ceil(range * per_side_ / box_length_));

@@ -21,17 +21,6 @@ Population population_of(const State& state) {
   return population;
 }
 
-double ordered_sum(std::span<const double> terms) {
-  constexpr std::size_t lanes = 8;
-  double lane[lanes] = {};
-  const std::size_t whole = terms.size() / lanes * lanes;
-  for (std::size_t i = 0; i < whole; i += lanes) {
-    for (std::size_t j = 0; j < lanes; ++j) lane[j] += terms[i + j];
-  }
-  for (std::size_t i = whole; i < terms.size(); ++i) lane[i - whole] += terms[i];
-  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
-}
-
 namespace {
 
 // Sorts one component and subtracts its mass-weighted mean.

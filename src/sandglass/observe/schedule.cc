@@ -60,7 +60,7 @@ MeasurementPlan plan_measurement(double start, double interval_length, std::uint
 }
 
 std::uint64_t affordable_structure_frames(const MeasurementPlan& plan, double mean_free_time) {
-  constexpr double free_times_per_frame = 1000;
+  constexpr double free_times_per_frame = 1500;
   const double affordable = (plan.end() - plan.start) / (mean_free_time * free_times_per_frame);
   return static_cast<std::uint64_t>(std::clamp(affordable, 5.0, 20.0));
 }

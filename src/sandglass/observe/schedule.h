@@ -44,8 +44,8 @@ bool compatible(const MeasurementPlan& a, const MeasurementPlan& b);
 MeasurementPlan plan_measurement(double start, double interval_length, std::uint64_t intervals, double mean_free_time,
                                  double lags_per_decade, std::vector<double> wavenumbers);
 
-/// Frames of the static structure that cost about a fiftieth of the run: one per 1000 mean free times, but 5 to 20. (A
-/// frame takes as long as some 20 collisions of every disk.)
+/// Frames of the static structure that cost about a hundredth of the run: one per 1500 mean free times, but 5 to 20. (A
+/// frame takes as long as some 15 collisions of every disk where kicks are driving.)
 std::uint64_t affordable_structure_frames(const MeasurementPlan& plan, double mean_free_time);
 
 /// What is due at one moment of an interval. Evaluations at an offset come before new origins there; some new origins

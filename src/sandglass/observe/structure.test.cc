@@ -20,7 +20,8 @@ std::array<std::vector<std::uint64_t>, 3> count_pairs(const IdealGas& system, do
   const std::vector<std::uint8_t> species = species_by_id(system.population);
   const double range = width * static_cast<double>(bins);
   const Cells cells(system.frame.x, system.frame.y, system.population.box_length, range / 4);
-  cells.for_each_pair(range, [&](std::uint32_t i, std::uint32_t j, double, double, double squared) {
+  cells.for_each_pair(range, [&](std::size_t a, std::size_t b, double squared) {
+    const std::uint32_t i = cells.order()[a], j = cells.order()[b];
     const auto bin = static_cast<std::size_t>(std::sqrt(squared) / width);
     if (bin < bins) ++counts[species[i] + species[j]][bin];
   });

@@ -96,20 +96,25 @@ void StructureSampler::add_pairs(const Frame& frame) {
   }
   const double bins_per_length = 1 / bin_width_, order_bins_per_length = 1 / order_bin_width;
   const Cells cells(frame.x, frame.y, population_.box_length, range_ / 4);
-  cells.for_each_pair(range_, [&](std::uint32_t i, std::uint32_t j, double, double, double squared) {
+  std::vector<std::uint8_t> species;
+  std::vector<std::complex<double>> order;
+  for (const std::uint32_t id : cells.order()) species.push_back(species_[id]), order.push_back(psi[id]);
+  std::vector<double> products(order_bins_);
+  cells.for_each_pair(range_, [&](std::size_t a, std::size_t b, double squared) {
     const double distance = std::sqrt(squared);
-    const std::size_t pair = species_[i] + species_[j];
-    const auto bin = static_cast<std::size_t>(distance * bins_per_length);
+    const std::size_t pair = species[a] + species[b];
+    const auto bin = static_cast<std::size_t>(static_cast<std::int64_t>(distance * bins_per_length));
     if (bin < bins_) ++pairs[pair * bins_ + bin];
     // Rounding leaves disks that touch closer by a hair; points that are no disks may overlap.
     const double gap = (distance - contact[pair]) * bins_per_gap[pair];
     if (gap > -1e-3 && gap < gap_bins) ++gaps[pair * gap_bins + static_cast<std::size_t>(std::max(0.0, gap))];
-    const auto order_bin = static_cast<std::size_t>(distance * order_bins_per_length);
+    const auto order_bin = static_cast<std::size_t>(static_cast<std::int64_t>(distance * order_bins_per_length));
     if (order_bin < order_bins_) {
       ++order_pairs[order_bin];
-      order_products[order_bin].add(psi[i].real() * psi[j].real() + psi[i].imag() * psi[j].imag());
+      products[order_bin] += order[a].real() * order[b].real() + order[a].imag() * order[b].imag();
     }
   });
+  for (std::size_t bin = 0; bin < order_bins_; ++bin) order_products[bin].add(products[bin]);
 }
 
 void StructureSampler::add_density(const Frame& frame) {
