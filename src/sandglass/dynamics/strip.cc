@@ -71,7 +71,9 @@ void Strip::run(double end) {
         on_review(i, t);
         break;
       case Next::freeze:
+        fetch_listed_ahead();
         freeze(i, t);
+        fetch_others_ahead();
         break;
     }
   }
