@@ -262,7 +262,14 @@ void Strip::later_pass() {
   for (std::uint32_t n = 0; n < resumed_; ++n) {
     if (n + 16 < resumed_) fetch_disk(concerned_[n + 16]);
     if (n + 8 < resumed_) fetch_listed(concerned_[n + 8]);
-    predict(concerned_[n]);
+    if (n % 2 == 1) {  // two searches at a time: neither waits for the other
+      const std::uint32_t i = concerned_[n - 1], j = concerned_[n];
+      const Lanes of_i = first_contacts(i, Flight(records_[i]), no_disk), of_j = first_contacts(j, Flight(records_[j]), no_disk);
+      settle(i, of_i);
+      settle(j, of_j);
+    } else if (n + 1 == resumed_) {
+      predict(concerned_[n]);
+    }
   }
   run_window();
   end_pass();
