@@ -242,7 +242,8 @@ void Strip::resume(const Strip& other) {
   const Rows met = beyond(reach_), kicking = beyond(lane_ - lane_ / 2);  // half of a lane belongs to this strip
   const auto& left = other.left_;
   for (std::size_t n = 0; n < left.size(); ++n) {
-    if (n + visits_ahead < left.size()) fetch_visited(left[n + visits_ahead].slot);
+    if (n + visits_ahead < left.size() && core_.hold(left[n + visits_ahead].row))
+      fetch_visited(left[n + visits_ahead].slot);
     const auto [slot, row] = left[n];
     if (!whole_ && !core_.hold(row)) {
       if (met.hold(row)) frozen_about_ = true;
@@ -273,7 +274,17 @@ void Strip::later_pass() {
   }
   run_window();
   end_pass();
+  sift_outbox();
   (whole_ ? bookkeeping_.left_over : bookkeeping_.frozen) += resumed_;
+}
+
+/// Forgets what no longer comes, and notes in which row the others stand, while they are still near the processor.
+void Strip::sift_outbox() {
+  std::size_t kept = 0;
+  for (const Entry entry : outbox_)
+    if (records_[entry.slot].next_time == entry.time || cold_[entry.slot].next_kick == entry.time)
+      outbox_[kept++] = {entry.time, entry.slot, row(entry.slot)};
+  while (outbox_.size() > kept) outbox_.pop_back();
 }
 
 void Strip::end_pass() {
@@ -289,12 +300,8 @@ void Strip::remake_calendar() {
 }
 
 void Strip::take_over(const Strip& other) {
-  const auto& outbox = other.outbox_;
-  for (std::size_t n = 0; n < outbox.size(); ++n) {
-    if (n + visits_ahead < outbox.size()) fetch_visited(outbox[n + visits_ahead].slot);
-    const auto [time, slot] = outbox[n];
-    if (owns(slot) && (records_[slot].next_time == time || cold_[slot].next_kick == time)) calendar_.push(time, slot);
-  }
+  for (const Entry& entry : other.outbox_)
+    if (core_.hold(entry.row)) calendar_.push(entry.time, entry.slot);
 }
 
 }  // namespace SANDGLASS_ISA

@@ -21,7 +21,7 @@ void Strip::predict(std::uint32_t i) { schedule(i, earliest_contact(i)); }
 /// Enters what comes next for disk i into the calendar.
 [[gnu::always_inline]] inline void Strip::enter_event(double t, std::uint32_t i) {
   if (t > outbox_from_) [[unlikely]]
-    outbox_.push_back({t, i});
+    outbox_.push_back({t, i, 0});
   else
     calendar_.push(t, i);
 }

@@ -26,10 +26,10 @@ struct Rows {
   [[nodiscard]] bool hold(std::uint32_t row) const { return (row >= first ? row - first : row + side - first) < count; }
 };
 
-/// An entry for the calendar.
+/// An entry for the calendar of the strip that holds the row where the disk stands.
 struct Entry {
   double time;
-  std::uint32_t slot;
+  std::uint32_t slot, row;
 };
 
 class alignas(128) Strip {
@@ -59,6 +59,7 @@ class alignas(128) Strip {
   /// Enters what a later pass has found to come after the window, as far as it belongs here.
   void take_over(const Strip& other);
   void clear_outbox() { outbox_.clear(); }
+  void sift_outbox();
   /// Freezes all disks of these rows from the start of the window on.
   void freeze_rows(Rows rows);
   /// The window's events of the strip's own disks.

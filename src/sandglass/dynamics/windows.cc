@@ -177,6 +177,7 @@ void IsaEngine::do_window(double end) {
     whole_.begin_later_pass();
     for (std::uint32_t s = 0; s < n; ++s) whole_.resume(first_[s]), whole_.resume(shifted_[s]);
     whole_.later_pass();
+    for (std::uint32_t s = 0; s < n; ++s) shifted_[s].sift_outbox();  // it may have changed what these hold
   }
   if (any_failed()) return undo(start, end);
   state_.now = end;
