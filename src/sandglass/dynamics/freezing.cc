@@ -240,6 +240,7 @@ void Strip::resume(const Strip& other) {
     return Rows{(core_.first + core_.side - rows) % core_.side, core_.count + 2 * rows, core_.side};
   };
   const Rows met = beyond(reach_), kicking = beyond(lane_ - lane_ / 2);  // half of a lane belongs to this strip
+  const bool kicked = tables_->state.drive.kind != DriveKind::none;
   const auto& left = other.left_;
   for (std::size_t n = 0; n < left.size(); ++n) {
     if (n + visits_ahead < left.size() && core_.hold(left[n + visits_ahead].row))
@@ -251,7 +252,7 @@ void Strip::resume(const Strip& other) {
     } else if (is_frozen(records_[slot])) {
       set_next(records_[slot], never, Next::review, no_disk);
       concerned_.push_back(slot);
-      enter_next_kick(slot);
+      if (kicked) enter_next_kick(slot);
       ++resumed_;
     }
   }
