@@ -18,6 +18,9 @@
 namespace sandglass {
 namespace {
 
+// Squares of velocities are summed to 6e-14 and up to 5e24 (ExactSum): between these speeds to four digits and more.
+constexpr double least_speed = 1e-5, most_speed = 1e9;
+
 enum class Format { h5md, lammps, xyz };
 
 Format format_of(const std::filesystem::path& path) {
@@ -146,13 +149,21 @@ bool FrameReader::next(Frame& frame) {
   frame.collisions_per_disk = counts_collisions_ ? 2 * static_cast<double>(raw_.step) / static_cast<double>(n) : 0;
   unwrap(raw_, &RawFrame::x, &RawFrame::image_x, last_x_);
   unwrap(raw_, &RawFrame::y, &RawFrame::image_y, last_y_);
+  double fastest = 0;
   for (std::size_t i = 0; i < n; ++i) {
     frame.x[i] = last_x_[i], frame.y[i] = last_y_[i];
     frame.vx[i] = has_velocities_ ? raw_.vx[places_[i]] / length_unit_ : 0;
     frame.vy[i] = has_velocities_ ? raw_.vy[places_[i]] / length_unit_ : 0;
-    if (!std::isfinite(frame.vx[i]) || !std::isfinite(frame.vy[i]))
-      refuse(fmt::format("a velocity of frame {} is too large to be counted in radii of the smallest disk", frames_));
+    fastest = std::max({fastest, std::fabs(frame.vx[i]), std::fabs(frame.vy[i])});
+    if (!(std::fabs(frame.vx[i]) <= most_speed) || !(std::fabs(frame.vy[i]) <= most_speed))
+      refuse(fmt::format("a disk of frame {} is faster than {:g} radii of the smallest disk per unit of time, and sums of "
+                         "squares would overflow: write times and velocities in a shorter unit of time",
+                         frames_, most_speed));
   }
+  if (fastest > 0 && fastest < least_speed)
+    refuse(fmt::format("all disks of frame {} are slower than {:g} radii of the smallest disk per unit of time, and sums of "
+                       "squares would lose their digits: write times and velocities in a longer unit of time",
+                       frames_, least_speed));
   ++frames_;
   return true;
 }

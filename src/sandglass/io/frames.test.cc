@@ -95,6 +95,21 @@ TEST_CASE("a trajectory of this program comes back, up to the last frame that wa
   CHECK(reader.largest_step() == 0);
 }
 
+TEST_CASE("velocities whose squares cannot be summed are refused, and the way out is named") {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& velocity) {
+    spill(folder / "v.xyz",
+          "2\nLattice=\"40 0 0 0 40 0 0 0 1\" Properties=pos:R:2:velo:R:2:radius:R:1\n1 1 " + velocity + " 1\n9 9 0 0 1\n");
+    read_all_frames(folder / "v.xyz", {});
+  };
+  const auto refused = [&](const std::string& velocity) { return message_of<InputError>([&] { read(velocity); }); };
+  CHECK(refused("2e9 0").find("a shorter unit of time") != std::string::npos);
+  CHECK(refused("1 -1e300").find("a shorter unit of time") != std::string::npos);
+  CHECK(refused("9e-6 0").find("a longer unit of time") != std::string::npos);
+  CHECK_NOTHROW(read("0 0"));
+  CHECK_NOTHROW(read("-1e9 1e-5"));
+}
+
 TEST_CASE("whatever is done to a file, it is read or refused") {
   const TemporaryFolder folder;
   CHECK(rc::check("mutations", [&](bool from_xyz) {
