@@ -266,7 +266,8 @@ void Strip::later_pass() {
     if (n + 8 < resumed_) fetch_listed(concerned_[n + 8]);
     if (n % 2 == 1) {  // two searches at a time: neither waits for the other
       const std::uint32_t i = concerned_[n - 1], j = concerned_[n];
-      const Lanes of_i = first_contacts(i, Flight(records_[i]), no_disk), of_j = first_contacts(j, Flight(records_[j]), no_disk);
+      const Lanes of_i = first_contacts(i, Flight(records_[i]), no_disk),
+                  of_j = first_contacts(j, Flight(records_[j]), no_disk);
       settle(i, of_i);
       settle(j, of_j);
     } else if (n + 1 == resumed_) {

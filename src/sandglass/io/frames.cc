@@ -156,14 +156,16 @@ bool FrameReader::next(Frame& frame) {
     frame.vy[i] = has_velocities_ ? raw_.vy[places_[i]] / length_unit_ : 0;
     fastest = std::max({fastest, std::fabs(frame.vx[i]), std::fabs(frame.vy[i])});
     if (!(std::fabs(frame.vx[i]) <= most_speed) || !(std::fabs(frame.vy[i]) <= most_speed))
-      refuse(fmt::format("a disk of frame {} is faster than {:g} radii of the smallest disk per unit of time, and sums of "
-                         "squares would overflow: write times and velocities in a shorter unit of time",
-                         frames_, most_speed));
+      refuse(
+          fmt::format("a disk of frame {} is faster than {:g} radii of the smallest disk per unit of time, and sums of "
+                      "squares would overflow: write times and velocities in a shorter unit of time",
+                      frames_, most_speed));
   }
   if (fastest > 0 && fastest < least_speed)
-    refuse(fmt::format("all disks of frame {} are slower than {:g} radii of the smallest disk per unit of time, and sums of "
-                       "squares would lose their digits: write times and velocities in a longer unit of time",
-                       frames_, least_speed));
+    refuse(fmt::format(
+        "all disks of frame {} are slower than {:g} radii of the smallest disk per unit of time, and sums of "
+        "squares would lose their digits: write times and velocities in a longer unit of time",
+        frames_, least_speed));
   ++frames_;
   return true;
 }

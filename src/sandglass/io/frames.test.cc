@@ -98,8 +98,8 @@ TEST_CASE("a trajectory of this program comes back, up to the last frame that wa
 TEST_CASE("velocities whose squares cannot be summed are refused, and the way out is named") {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& velocity) {
-    spill(folder / "v.xyz",
-          "2\nLattice=\"40 0 0 0 40 0 0 0 1\" Properties=pos:R:2:velo:R:2:radius:R:1\n1 1 " + velocity + " 1\n9 9 0 0 1\n");
+    spill(folder / "v.xyz", "2\nLattice=\"40 0 0 0 40 0 0 0 1\" Properties=pos:R:2:velo:R:2:radius:R:1\n1 1 " +
+                                velocity + " 1\n9 9 0 0 1\n");
     read_all_frames(folder / "v.xyz", {});
   };
   const auto refused = [&](const std::string& velocity) { return message_of<InputError>([&] { read(velocity); }); };

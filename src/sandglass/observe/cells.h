@@ -28,8 +28,8 @@ class Cells {
   /// The disks from cell to cell. Who is near whom stands near each other in it.
   [[nodiscard]] std::span<const std::uint32_t> order() const { return sorted_; }
 
-  /// Calls visit(a, b, (distance)^2) once for every pair of disks closer than `range` <= L/2, order()[a] and order()[b],
-  /// at their nearest images. The order of the pairs is a function of the positions alone.
+  /// Calls visit(a, b, (distance)^2) once for every pair of disks closer than `range` <= L/2, order()[a] and
+  /// order()[b], at their nearest images. The order of the pairs is a function of the positions alone.
   template <class Visit>
   void for_each_pair(double range, Visit&& visit) const;
 

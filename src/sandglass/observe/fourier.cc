@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "sandglass/core/random.h"
+#include "sandglass/observe/portable.h"
 
 namespace sandglass {
 namespace {
@@ -17,10 +18,9 @@ void reverse_bits(std::vector<double>& values, std::size_t rows, std::size_t wid
   }
 }
 
-// a, b <- a + w b, a - w b for two rows. The wide version does the same operations, without fused multiply-adds.
-[[gnu::target_clones("avx512f", "avx2", "default")]] void combine(double* __restrict ar, double* __restrict ai,
-                                                                  double* __restrict br, double* __restrict bi,
-                                                                  double wr, double wi, std::size_t width) {
+// a, b <- a + w b, a - w b for two rows.
+SANDGLASS_WIDE void combine(double* __restrict ar, double* __restrict ai, double* __restrict br, double* __restrict bi,
+                            double wr, double wi, std::size_t width) {
   for (std::size_t c = 0; c < width; ++c) {
     const double re = wr * br[c] - wi * bi[c], im = wr * bi[c] + wi * br[c];
     br[c] = ar[c] - re;

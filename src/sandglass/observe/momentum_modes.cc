@@ -25,8 +25,7 @@ struct Mode {
   double xr = 0, xi = 0, yr = 0, yi = 0;
 };
 
-[[gnu::target_clones("avx512f", "avx2", "default")]] Mode velocity_mode(const Snapshot& s, Range range, double kx,
-                                                                        double ky) {
+SANDGLASS_WIDE Mode velocity_mode(const Snapshot& s, Range range, double kx, double ky) {
   Mode mode;
   std::array<double, block_size> cosine, sine, product;
   for (std::size_t begin = range.begin; begin < range.end; begin += block_size) {

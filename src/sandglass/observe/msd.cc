@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sandglass/observe/portable.h"
 #include "sandglass/observe/van_hove.h"
 
 namespace sandglass {
 namespace {
 
 /// Squares and fourth powers of `count` displacements; how many squares are at most `limit`.
-[[gnu::target_clones("avx512f", "avx2", "default")]] std::uint64_t powers(const double* x, const double* x0,
-                                                                          const double* y, const double* y0,
-                                                                          std::size_t count, double scale, double limit,
-                                                                          double* squares, double* fourths) {
+SANDGLASS_WIDE std::uint64_t powers(const double* x, const double* x0, const double* y, const double* y0,
+                                    std::size_t count, double scale, double limit, double* squares, double* fourths) {
   std::uint64_t within = 0;
   for (std::size_t j = 0; j < count; ++j) {
     const double dx = (x[j] - x0[j]) * scale;

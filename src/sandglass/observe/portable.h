@@ -3,6 +3,15 @@
 
 #include <cmath>
 
+/// Before a function that works on a loop over disks: it is compiled for three widths of vectors, and the widest that
+/// the machine has is taken. The operations are the same, on more disks at a time, and none is a fused multiply-add:
+/// the same bits.
+#ifdef __x86_64__
+#define SANDGLASS_WIDE [[gnu::target_clones("avx512f", "avx2", "default")]]
+#else
+#define SANDGLASS_WIDE
+#endif
+
 namespace sandglass {
 
 /// cos(2 pi u) for |u| < 2^50, absolute error below 1e-13 (and that of u itself, 2 pi |u| 1.1e-16). Built from + - *

@@ -69,11 +69,9 @@ WaveShell wave_shell(double wavenumber, double box_length) {
   return shell;
 }
 
-// Nearly all the time of sampling goes here. The wide version does the same operations on more disks at a time, without
-// fused multiply-adds: the same bits.
-[[gnu::target_clones("avx512f", "avx2", "default")]] void add_scattering(const Snapshot& origin, const Snapshot& now,
-                                                                         Range range, const WaveShell& shell,
-                                                                         double box_length, ExactSum& sum) {
+// Most of the time of sampling goes here.
+SANDGLASS_WIDE void add_scattering(const Snapshot& origin, const Snapshot& now, Range range, const WaveShell& shell,
+                                   double box_length, ExactSum& sum) {
   const double per_length = 1 / box_length;
   const double weight = 1 / static_cast<double>(shell.modes.size());
   std::array<double, block_size> dx, dy, cosines;

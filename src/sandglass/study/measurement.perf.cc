@@ -18,7 +18,7 @@ namespace sandglass {
 namespace {
 
 constexpr std::uint64_t beats_by_turns = 20, beats_of_equilibration = 200;
-constexpr std::uint64_t most_intervals = 1000;         // of a plan; as many as asked for are run
+constexpr std::uint64_t most_intervals = 1000;            // of a plan; as many as asked for are run
 constexpr double collisions_per_disk_of_interval = 1000;  // as in a run of default length
 
 double processor_seconds() {
