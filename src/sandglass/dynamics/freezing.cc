@@ -151,6 +151,17 @@ void Strip::concern_if_beside_frozen(std::uint32_t i) {
     if (is_frozen(records_[neighbours_.listed(i, n)])) return concern(i);
 }
 
+/// A disk may have entries in the calendar of its home, which must be made anew before another strip has it.
+void Strip::find_home(std::uint32_t i) {
+  Record& disk = records_[i];
+  const std::uint8_t here = tables_->homes[row(i)];
+  if (here == Tables::in_lane || here == disk.home) return;
+  if (disk.home == Tables::in_lane)
+    disk.home = here;
+  else
+    crossed_ = true;
+}
+
 void Strip::freeze_no_later(std::uint32_t i, double t) {
   Record& disk = records_[i];
   if (t >= disk.next_time || t > tables_->window.end) return;

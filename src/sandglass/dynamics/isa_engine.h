@@ -77,7 +77,8 @@ class IsaEngine final : public Engine {
   Array<KeptDisk> kept_;  // the disks some windows ago
   Tally kept_tally_;
   double kept_now_ = 0;
-  unsigned windows_since_kept_ = 0, windows_between_copies_ = 1;
+  static constexpr unsigned windows_between_copies = 32;  // at most
+  unsigned windows_since_kept_ = 0;
   std::uint64_t windows_done_ = 0, undone_ = 0;  // since the disks were loaded
 };
 

@@ -31,8 +31,9 @@ struct alignas(64) Record {
   std::uint32_t partner;  ///< slot of the disk that `next` (a contact) names, else no_disk
   Next next;
   Species species : 4;
-  bool concerned : 1;  ///< in this window the disk is frozen, or must look out for frozen ones
-  bool roomy : 1;      ///< which leash it is on, see Tables
+  bool concerned : 1;     ///< in this window the disk is frozen, or must look out for frozen ones
+  bool roomy : 1;         ///< which leash it is on, see Tables
+  std::uint8_t home : 2;  ///< in which strip's calendar it may have entries, see Tables
   std::uint16_t neighbour_count;
 };
 static_assert(sizeof(Record) == 64);

@@ -378,6 +378,7 @@ bool Strip::remake_list(std::uint32_t i, double t) {
   ++bookkeeping_.list_rebuilds;
   set_centre(i, centre);
   if (!whole_) concern_if_beside_frozen(i);
+  if (!first_pass_) find_home(i);
   return true;
 }
 

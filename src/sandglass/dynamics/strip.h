@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "sandglass/dynamics/array.h"
 #include "sandglass/dynamics/batch.h"
@@ -74,6 +75,8 @@ class alignas(128) Strip {
   [[nodiscard]] bool owns(std::uint32_t i) const { return whole_ || core_.hold(row(i)); }
   /// Enters what comes next for the strip's own disks, and forgets all else.
   void remake_calendar();
+  /// Whether a disk has come through a lane from one strip to another since this was last asked.
+  [[nodiscard]] bool crossed() { return std::exchange(crossed_, false); }
   [[nodiscard]] bool failed() const { return failed_; }
   [[nodiscard]] bool too_fast() const { return too_fast_; }
   [[nodiscard]] bool too_deep() const { return too_deep_; }
@@ -190,6 +193,7 @@ class alignas(128) Strip {
   void fetch_visited(std::uint32_t i) const { prefetch(&records_[i]), fetch_disk(i); }
   void freeze(std::uint32_t i, double t);
   void freeze_no_later(std::uint32_t i, double t);
+  void find_home(std::uint32_t i);
   [[nodiscard]] double freezing_time(std::uint32_t i);
   [[nodiscard]] double earliest_touch(const Record& disk, const Record& ghost) const;
   [[nodiscard]] double earliest_touch_of_listed(std::uint32_t i) const;
@@ -246,6 +250,7 @@ class alignas(128) Strip {
   bool whole_ = true;        // no other thread is at work
   bool first_pass_ = true;
   bool frozen_about_ = false;              // in a later pass: some are frozen that may be met
+  bool crossed_ = false;                   // a disk has come from one strip to another
   bool failed_ = false;                    // the window must be undone
   bool too_fast_ = false;                  // because a disk was faster than trusted
   bool too_deep_ = false;                  // because one would be frozen farther from the lanes than expected

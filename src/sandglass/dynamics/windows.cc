@@ -18,7 +18,7 @@ inline namespace SANDGLASS_ISA {
 
 void IsaEngine::run(double end) {
   while (state_.now < end && strips_ > 1) {
-    if (windows_since_kept_ == windows_between_copies_) keep();
+    if (windows_since_kept_ >= windows_between_copies) keep();
     const double windows = std::ceil((end - state_.now) / window_length());
     do_window(windows > 1 ? state_.now + (end - state_.now) / windows : end);
   }
@@ -122,13 +122,13 @@ void IsaEngine::divide() {
   lanes_ = std::make_unique<Rows[]>(n);
   auto middle = [&](std::uint32_t s) { return (border(s) + border(s + 1)) / 2; };
   const std::size_t between = tables_.size * 2 * lane / side;  // about as many disks are frozen around a lane
-  // A disk that goes from one strip to the next has been frozen in every window on its way through the lane.
-  const double windows = (whole_.neighbours().grid().height(lane) - 2 * tables_.leash[true]) / way();
-  windows_between_copies_ = windows < 24 ? windows > 1 ? static_cast<unsigned>(windows) : 1 : 24;
   survey();
   const double window = window_length(), lead = mean_lead();
+  tables_.homes = Array<std::uint8_t>(side);
+  for (std::uint8_t& home : tables_.homes) home = Tables::in_lane;
   for (std::uint32_t s = 0; s < n; ++s) {
     const std::uint32_t from = border(s) - lane / 2 + lane, to = border(s + 1) - lane / 2;
+    for (std::uint32_t row = from; row < to; ++row) tables_.homes[row] = s + 1 == n && n % 2 == 1 ? 2 : s % 2;
     first_[s] = Strip(tables_, {from, to - from, side}, reach_, lane);
     first_[s].set_calendar(calendar_for(lead, tables_.size / n));
     lanes_[s] = {(border(s) + side - lane / 2) % side, lane, side};
@@ -184,6 +184,9 @@ void IsaEngine::do_window(double end) {
   ++bookkeeping.windows;
   ++windows_done_;
   ++windows_since_kept_;
+  bool crossed = whole_.crossed();
+  for (std::uint32_t s = 0; s < n; ++s) crossed = shifted_[s].crossed() || crossed;
+  if (crossed) windows_since_kept_ = windows_between_copies;
   hand_in();
   replenish();
   gather_strip_logs();
@@ -229,8 +232,8 @@ void IsaEngine::survey() {
     top_speed_[small] = top_speed_[big] = std::fmax(top_speed_[small], top_speed_[big]);
 }
 
-/// Keeps the disks as they are, for undo. The calendars are made anew, before a disk that has an entry in one can have
-/// gone through a lane to another strip. Lists get more room before one is full: in a window they may not move.
+/// Keeps the disks as they are, for undo. The calendars are made anew: no entry may outlive its disk's stay in a strip
+/// (and the lanes beside it). Lists get more room before one is full: in a window they may not move.
 void IsaEngine::keep() {
   survey();
   const std::size_t size = tables_.size, threads = strips_;
@@ -238,6 +241,7 @@ void IsaEngine::keep() {
   crew->work(strips_, [&](unsigned s) {
     for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i) {
       const ColdRecord& cold = tables_.cold[i];
+      tables_.records[i].home = tables_.homes[first_[0].neighbours().grid().row_of(cold.centre)];
       kept_[i] = {tables_.records[i], cold.last_contact, cold.next_kick, cold.kick_count, tables_.images[i]};
     }
     first_[s].remake_calendar();
