@@ -154,9 +154,9 @@ void Strip::concern_if_beside_frozen(std::uint32_t i) {
 /// A disk may have entries in the calendar of its home, which must be made anew before another strip has it.
 void Strip::find_home(std::uint32_t i) {
   Record& disk = records_[i];
-  const std::uint8_t here = tables_->homes[row(i)];
-  if (here == Tables::in_lane || here == disk.home) return;
-  if (disk.home == Tables::in_lane)
+  const Home here = tables_->homes[row(i)];
+  if (here == Home::none || here == disk.home) return;
+  if (disk.home == Home::none)
     disk.home = here;
   else
     crossed_ = true;

@@ -15,13 +15,13 @@ OverlappingPair IsaEngine::load(const std::uint32_t* order) {
     tables_.ids = Array<std::uint32_t>(size);
     tables_.images = Array<Image>(size);
     // Fills the empty places of neighbour lists: every contact would come after what it has next.
-    tables_.records[size] = {0, 0, 0, 0, 0, nobodys, 0, no_disk, Next::review, small, false, true, 0, 0};
+    tables_.records[size] = Record{0, 0, 0, 0, 0, nobodys, 0, no_disk, Next::review, small, false, true, Home::none, 0};
   }
   for (std::uint32_t i = 0; i < size; ++i) {
     const Disk& disk = state_.disks[order[i]];
-    tables_.records[i] = {
-        disk.x,  disk.y,       disk.vx,      disk.vy, disk.time, never, state_.mixture.radius[disk.species],
-        no_disk, Next::review, disk.species, false,   true,      0,     0};
+    tables_.records[i] =
+        Record{disk.x,  disk.y,       disk.vx,      disk.vy, disk.time, never,      state_.mixture.radius[disk.species],
+               no_disk, Next::review, disk.species, false,   true,      Home::none, 0};
     tables_.cold[i] = {.listed = {},
                        .centre = {},
                        .last_contact = disk.last_contact,

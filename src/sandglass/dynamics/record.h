@@ -21,6 +21,11 @@ inline namespace SANDGLASS_ISA {
 /// name. The calendar has one entry for a contact, under the slot of one of the two disks.
 enum class Next : std::uint8_t { review, freeze, contact, contact_entered_by_partner, kick, transit };
 
+/// Where several threads work: the strip of the first pass in whose calendar a disk may have entries, by its number
+/// (the last of an odd number stands next to an even one); or none, where it has not left a lane since these were made
+/// anew.
+enum class Home : std::uint8_t { even, odd, last, none };
+
 /// The hot half: the flight, and what comes next. A contact stands in the records of both its disks.
 struct alignas(64) Record {
   double x, y, vx, vy;
@@ -31,9 +36,9 @@ struct alignas(64) Record {
   std::uint32_t partner;  ///< slot of the disk that `next` (a contact) names, else no_disk
   Next next;
   Species species : 4;
-  bool concerned : 1;     ///< in this window the disk is frozen, or must look out for frozen ones
-  bool roomy : 1;         ///< which leash it is on, see Tables
-  std::uint8_t home : 2;  ///< in which strip's calendar it may have entries, see Tables
+  bool concerned : 1;  ///< in this window the disk is frozen, or must look out for frozen ones
+  bool roomy : 1;      ///< which leash it is on, see Tables
+  Home home : 2;
   std::uint16_t neighbour_count;
 };
 static_assert(sizeof(Record) == 64);

@@ -44,10 +44,7 @@ struct Tables {
   enum class Zone : std::uint8_t { near_lane, beside, roomy };
   Array<Zone> zones;
   [[nodiscard]] Zone zone(std::uint32_t row) const { return zones.size() == 0 ? Zone::roomy : zones[row]; }
-  /// Where several threads work, by the same row: which strip of the first pass that is. Those next to each other have
-  /// different names. A disk is at home in the strip where it has stood since the calendars were made anew.
-  static constexpr std::uint8_t in_lane = 3;
-  Array<std::uint8_t> homes;
+  Array<Home> homes;  ///< by the same row: the strip of the first pass that it belongs to
   Window window;
 
   bool out_of_cache = false;  ///< the records do not fit into the cache

@@ -124,11 +124,12 @@ void IsaEngine::divide() {
   const std::size_t between = tables_.size * 2 * lane / side;  // about as many disks are frozen around a lane
   survey();
   const double window = window_length(), lead = mean_lead();
-  tables_.homes = Array<std::uint8_t>(side);
-  for (std::uint8_t& home : tables_.homes) home = Tables::in_lane;
+  tables_.homes = Array<Home>(side);
+  for (Home& home : tables_.homes) home = Home::none;
   for (std::uint32_t s = 0; s < n; ++s) {
     const std::uint32_t from = border(s) - lane / 2 + lane, to = border(s + 1) - lane / 2;
-    for (std::uint32_t row = from; row < to; ++row) tables_.homes[row] = s + 1 == n && n % 2 == 1 ? 2 : s % 2;
+    const Home home = s % 2 == 1 ? Home::odd : s + 1 == n && n > 1 ? Home::last : Home::even;
+    for (std::uint32_t row = from; row < to; ++row) tables_.homes[row] = home;
     first_[s] = Strip(tables_, {from, to - from, side}, reach_, lane);
     first_[s].set_calendar(calendar_for(lead, tables_.size / n));
     lanes_[s] = {(border(s) + side - lane / 2) % side, lane, side};
