@@ -21,12 +21,6 @@ constexpr std::uint64_t beats_by_turns = 20, beats_of_equilibration = 200;
 constexpr std::uint64_t most_intervals = 1000;            // of a plan; as many as asked for are run
 constexpr double collisions_per_disk_of_interval = 1000;  // as in a run of default length
 
-double processor_seconds() {
-  timespec used{};
-  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
-  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
-}
-
 /// 10^4 disks, kicked in pairs.
 Config driven_fluid() {
   Config config;
@@ -47,7 +41,7 @@ class SideBySide {
     measurement_.emplace(start, beat_);
     plain_.emplace(start);
     measured_.emplace(std::move(start));
-    go_on(*plain_, beats_of_equilibration);
+    go_on_plain(beats_of_equilibration);
     go_on_measuring(beats_of_equilibration);
     beats_ = beats_of_equilibration;
 
@@ -68,12 +62,9 @@ class SideBySide {
     Seconds sum{0, 0};
     for (const std::uint64_t end = beats_ + beats_per_interval_; beats_ < end;) {
       const std::uint64_t next = std::min(end, beats_ + beats_by_turns);
-      const auto plain = [&] { sum.plain += seconds([&] { go_on(*plain_, next); }); };
-      const auto measured = [&] { sum.measured += seconds([&] { go_on_measuring(next); }); };
-      if (plain_first_)
-        plain(), measured();
-      else
-        measured(), plain();
+      if (plain_first_) sum.plain += go_on_plain(next);
+      sum.measured += go_on_measuring(next);
+      if (!plain_first_) sum.plain += go_on_plain(next);
       plain_first_ = !plain_first_;
       beats_ = next;
     }
@@ -91,18 +82,18 @@ class SideBySide {
     [[nodiscard]] std::vector<Dataset> results() const { return {}; }
   };
 
-  template <class Work>
-  static double seconds(Work&& work) {
-    const double begun = processor_seconds();
-    work();
-    return processor_seconds() - begun;
+  /// Goes on beat by beat, and returns the processor time that it took, in seconds.
+  template <class RunUntil>
+  double go_on(std::uint64_t beats, RunUntil&& run_until) const {
+    const std::clock_t begun = std::clock();
+    for (std::uint64_t n = beats_ + 1; n <= beats; ++n) run_until(static_cast<double>(n) * beat_);
+    return static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
   }
-  void go_on(Simulation& simulation, std::uint64_t beats) const {
-    for (std::uint64_t n = beats_ + 1; n <= beats; ++n) simulation.run_until(static_cast<double>(n) * beat_);
+  double go_on_plain(std::uint64_t beats) {
+    return go_on(beats, [this](double end) { plain_->run_until(end); });
   }
-  void go_on_measuring(std::uint64_t beats) {
-    for (std::uint64_t n = beats_ + 1; n <= beats; ++n)
-      measurement_->run_until(*measured_, static_cast<double>(n) * beat_, nobody_);
+  double go_on_measuring(std::uint64_t beats) {
+    return go_on(beats, [this](double end) { measurement_->run_until(*measured_, end, nobody_); });
   }
 
   double beat_;
