@@ -100,7 +100,7 @@ bool Strip::run_batch() {
       const double flight = t - batch.time[0], leash = leash_[0];
       if ((disk.vx * disk.vx + disk.vy * disk.vy) * (flight * flight) > 0.99 * leash * leash || !remake_list(i, t))
         return false;
-      neighbours_.tell_others(i, records_);
+      tell_listed(i);
     }
   }
   const std::uint32_t j = contact ? disk.partner : i;

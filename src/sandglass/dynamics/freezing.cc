@@ -27,19 +27,19 @@ inline constexpr double beyond_rounding = 1 + 1e-9;  // contact distances are lo
   return choose(zero < room, later, t);
 }
 
-/// When disk i, on its present flight, can be touched by a frozen one of its list at the earliest.
-double Strip::earliest_touch_of_listed(std::uint32_t i) const {
+Strip::Menace Strip::menace(std::uint32_t i) const {
   const Record& disk = records_[i];
   const Vector x = Vector::all(disk.x), y = Vector::all(disk.y), vx = Vector::all(disk.vx), vy = Vector::all(disk.vy);
   const Vector time = Vector::all(disk.time), radius = Vector::all(disk.radius), zero = Vector::all(0);
   const Window& window = tables_->window;
-  double earliest = never;
+  Menace menace;
   for (std::uint32_t first = 0; first < disk.neighbour_count; first += Vector::width) {
     const std::uint32_t* const list = neighbours_.list_from(i, first);
     Vector other[8];  // columns of the record: x, y, vx, vy, time, next_time, radius
     load_columns(records_, list, other);
     const Mask frozen = (Vector::all(nobodys) < other[5]) & (other[5] < zero);
     if (frozen.lanes() == 0) continue;
+    menace.any = true;
     const Vector start = Vector::all(window.start - 1) - other[5], t = max(time, start);
     const Vector flight = t - time, ghost_flight = start - other[4];
     const Vector rx = nearest(fma(vx, flight, x) - fma(other[2], ghost_flight, other[0]), box_);
@@ -47,14 +47,14 @@ double Strip::earliest_touch_of_listed(std::uint32_t i) const {
     const Mask is_big = other[6] == Vector::all(tables_->state.mixture.radius[big]);
     const Vector speed = choose(is_big, Vector::all(window.top_speed[big]), Vector::all(window.top_speed[small]));
     const Vector touch = touch_times(t, start, rx, ry, vx, vy, radius + other[6], speed);
-    earliest = std::fmin(earliest, smallest(choose(frozen, touch, Vector::all(never))));
+    menace.touch = std::fmin(menace.touch, smallest(choose(frozen, touch, Vector::all(never))));
   }
-  return earliest;
+  return menace;
 }
 
-/// Calls visit(k, t) for every known disk k of the list of the frozen disk i, which it can touch at t at the earliest.
-template <class Visit>
-[[gnu::always_inline]] inline void Strip::visit_touched(std::uint32_t i, Visit&& visit) const {
+/// Of the list of the frozen disk i all known disks look out for it from now on, and are frozen where it can touch them
+/// before what they have next.
+void Strip::menace_listed(std::uint32_t i) {
   const Record& ghost = records_[i];
   const double started = since(ghost);
   const Position at = position_at(ghost, started);
@@ -67,11 +67,15 @@ template <class Visit>
     const Vector t = max(other[4], start), flight = t - other[4];
     const Vector rx = nearest(fma(other[2], flight, other[0]) - x, box_);
     const Vector ry = nearest(fma(other[3], flight, other[1]) - y, box_);
-    alignas(64) double touch[Vector::width];
-    touch_times(t, start, rx, ry, other[2], other[3], radius + other[6], speed).store(touch);
-    for (unsigned known = (zero <= other[5]).lanes(); known != 0; known &= known - 1) {
-      const auto lane = static_cast<unsigned>(__builtin_ctz(known));
-      visit(list[lane], touch[lane]);
+    const Vector touch = touch_times(t, start, rx, ry, other[2], other[3], radius + other[6], speed);
+    const Mask known = zero <= other[5], in_window = touch <= Vector::all(tables_->window.end);
+    alignas(64) double times[Vector::width];
+    touch.store(times);
+    for (unsigned lanes = first_pass_ ? known.lanes() : 0; lanes != 0; lanes &= lanes - 1)
+      concern(list[__builtin_ctz(lanes)]);
+    for (unsigned lanes = (known & in_window & (touch < other[5])).lanes(); lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
+      if (!is_done(list[lane])) freeze_no_later(list[lane], times[lane]);  // others are never met in this window
     }
   }
 }
@@ -91,19 +95,24 @@ double Strip::earliest_touch(const Record& disk, const Record& ghost) const {
   return closing > 0 ? t + room / closing : never;
 }
 
-double Strip::earliest_touch_of_listed(std::uint32_t i) const {
-  double earliest = never;
-  for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n)
-    if (const Record& other = records_[neighbours_.listed(i, n)]; is_frozen(other))
-      earliest = std::fmin(earliest, earliest_touch(records_[i], other));
-  return earliest;
+Strip::Menace Strip::menace(std::uint32_t i) const {
+  Menace menace;
+  for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n) {
+    const Record& other = records_[neighbours_.listed(i, n)];
+    if (!is_frozen(other)) continue;
+    menace.any = true;
+    menace.touch = std::fmin(menace.touch, earliest_touch(records_[i], other));
+  }
+  return menace;
 }
 
-template <class Visit>
-[[gnu::always_inline]] inline void Strip::visit_touched(std::uint32_t i, Visit&& visit) const {
-  for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n)
-    if (const std::uint32_t k = neighbours_.listed(i, n); !is_frozen(records_[k]))
-      visit(k, earliest_touch(records_[k], records_[i]));
+void Strip::menace_listed(std::uint32_t i) {
+  for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n) {
+    const std::uint32_t k = neighbours_.listed(i, n);
+    if (is_frozen(records_[k]) || is_done(k)) continue;
+    concern(k);
+    freeze_no_later(k, earliest_touch(records_[k], records_[i]));
+  }
 }
 
 #endif
@@ -114,8 +123,8 @@ double Strip::freezing_time(std::uint32_t i) {
     check_speed(records_[i]);
     if (!frozen_about_) return never;
   }
-  const double earliest = earliest_touch_of_listed(i);
-  return earliest <= tables_->window.end ? earliest : never;
+  const double touch = menace(i).touch;
+  return touch <= tables_->window.end ? touch : never;
 }
 
 void Strip::freeze(std::uint32_t i, double t) {
@@ -127,16 +136,12 @@ void Strip::freeze(std::uint32_t i, double t) {
   left_.push_back({i, row(i)});
   frozen_about_ = true;
   if (!whole_ && tables_->zone(row(i)) != Tables::Zone::near_lane) [[unlikely]] {
-    failed_ = too_deep_ = true;
-    end_ = tables_->window.start;  // stops the loop
+    too_deep_ = true;
+    give_up();
   }
   check_speed(disk);
   expect_kick(i);
-  visit_touched(i, [this](std::uint32_t k, double touch) {
-    if (is_done(k)) return;  // with this window, and never met in it
-    concern(k);
-    freeze_no_later(k, touch);
-  });
+  menace_listed(i);
 }
 
 /// From now on disk i must look out for frozen ones.
@@ -144,11 +149,6 @@ void Strip::concern(std::uint32_t i) {
   if (records_[i].concerned) return;
   records_[i].concerned = true;
   concerned_.push_back(i);
-}
-
-void Strip::concern_if_beside_frozen(std::uint32_t i) {
-  for (std::uint32_t n = 0; n < records_[i].neighbour_count; ++n)
-    if (is_frozen(records_[neighbours_.listed(i, n)])) return concern(i);
 }
 
 /// A disk may have entries in the calendar of its home, which must be made anew before another strip has it.
@@ -176,8 +176,8 @@ void Strip::check_speed(const Record& disk) {
   const double top = tables_->window.top_speed[disk.species];
   if (disk.vx * disk.vx + disk.vy * disk.vy <= top * top) [[likely]]
     return;
-  failed_ = too_fast_ = true;
-  end_ = tables_->window.start;  // stops the loop
+  too_fast_ = true;
+  give_up();
 }
 
 /// Calls visit(slot) for every disk in these rows.
@@ -215,12 +215,13 @@ void Strip::begin_pass() {
 /// The disks of the outer rows look which of their neighbours are frozen.
 void Strip::first_pass() {
   auto look_out = [this](std::uint32_t i) {
-    concern_if_beside_frozen(i);
-    if (!records_[i].concerned) return;
+    const auto [any, touch] = menace(i);
+    if (!any) return;
+    concern(i);
     const Record& disk = records_[i];
     if (disk.partner != no_disk && is_frozen(records_[disk.partner]))
       lose_partner(i, disk.next_time, disk.next == Next::contact_entered_by_partner);
-    freeze_no_later(i, freezing_time(i));
+    freeze_no_later(i, touch);
   };
   const std::uint32_t lower = core_.count < reach_ ? core_.count : reach_;
   const std::uint32_t upper = core_.count - lower < reach_ ? core_.count - lower : reach_;

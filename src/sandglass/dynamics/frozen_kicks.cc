@@ -81,7 +81,7 @@ void Strip::on_frozen_kick(const FrozenKick& kick) {
     auto within_room = [&] { return nearest + grown + bodies + leash_[true] < room; };
     if (!within_room()) grid.visit_near(x, y, room, bound);  // in a dilute system lists may be empty
     if (!within_room()) {
-      failed_ = true;
+      give_up();
       return;
     }
   }

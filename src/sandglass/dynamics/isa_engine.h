@@ -43,6 +43,7 @@ class IsaEngine final : public Engine {
   void divide();
   void survey();
   void keep();
+  void find_homes();
   [[nodiscard]] double way() const { return window_part_ * tables_.neighbours.skin; }
   [[nodiscard]] double window_length() const;
   void do_window(double end);

@@ -110,7 +110,7 @@ class Neighbours {
     grid_.displace(slot, old, records[slot].species);
     const Grid::Slots found = find(at, records[slot]);
     const std::uint32_t before = records[slot].neighbour_count;
-    if (fixed && !have_room(found, records)) [[unlikely]] {
+    if (fixed && (found.count > room() || grid_.spare_lines() == 0)) [[unlikely]] {
       grid_.place(slot, old, records[slot].species);
       return false;
     }
@@ -140,10 +140,16 @@ class Neighbours {
   }
 
   /// Enters the disk whose list was made anew into the lists of those who came, and strikes it from those of who went.
-  /// Their lists may be far from the processor, so it is well to do something else in between.
-  void tell_others(std::uint32_t slot, Record* records) {
+  /// Their lists may be far from the processor, so it is well to do something else in between. False if one of them is
+  /// full and may not move (`fixed`): then not everybody has been told, and no list must be used any more.
+  [[nodiscard]] bool tell_others(std::uint32_t slot, Record* records, bool fixed) {
     for (std::uint32_t n = 0; n < gone_; ++n) remove(changes_[came_ + n], slot, records);
-    for (std::uint32_t n = 0; n < came_; ++n) add(changes_[n], slot, records);
+    for (std::uint32_t n = 0; n < came_; ++n) {
+      if (fixed && records[changes_[n]].neighbour_count == room()) [[unlikely]]
+        return false;
+      add(changes_[n], slot, records);
+    }
+    return true;
   }
 
   /// Whether the list of a disk, whose list centre is `at`, names everybody whose list centre is within range, and
@@ -200,13 +206,6 @@ class Neighbours {
     for (std::uint32_t first = block; first < count; first += block)
       lanes |= lanes_of(list_from(slot, first), count - first, other);
     return lanes != 0;
-  }
-
-  /// Whether the tables have room for a list of `found`, whoever of them may be new.
-  [[nodiscard]] bool have_room(const Grid::Slots& found, const Record* records) const {
-    bool enough = found.count <= room() && grid_.spare_lines() > 0;
-    for (std::uint32_t n = 0; n < found.count; ++n) enough &= records[found.first[n]].neighbour_count < room();
-    return enough;
   }
 
   void add(std::uint32_t slot, std::uint32_t other, Record* records) {

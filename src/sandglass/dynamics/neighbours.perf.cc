@@ -31,7 +31,7 @@ void renew(benchmark::State& state, const State& here, const State& there, doubl
   unsigned at = 0;
   for (auto _ : state) {
     neighbours.renew(slot, centres[at][slot], centres[1 - at][slot], &records[0]);
-    neighbours.tell_others(slot, &records[0]);
+    benchmark::DoNotOptimize(neighbours.tell_others(slot, &records[0], false));
     slot = (slot + step) % size;
     if (slot == 0) at = 1 - at;
   }

@@ -362,10 +362,22 @@ void Strip::on_review(std::uint32_t i, double t) {
   fetch_others_ahead();
   predict(i);
   if (still_listed) return;
-  neighbours_.tell_others(i, records_);
+  tell_listed(i);
 }
 
-/// Makes the list of disk i anew around where it is at time t; Neighbours::tell_others must follow. Its record does not
+/// Enters disk i, whose list has been made anew, into those of the others.
+void Strip::tell_listed(std::uint32_t i) {
+  if (!neighbours_.tell_others(i, records_, !whole_)) [[unlikely]]
+    give_up();
+}
+
+/// The window must be undone: stops the loop.
+void Strip::give_up() {
+  failed_ = true;
+  end_ = tables_->window.start;
+}
+
+/// Makes the list of disk i anew around where it is at time t; tell_listed must follow. Its record does not
 /// change. Nobody names i, whose next event this was; so nobody who has left its list does. False if that would reach
 /// into what another thread works on.
 bool Strip::remake_list(std::uint32_t i, double t) {
@@ -373,11 +385,12 @@ bool Strip::remake_list(std::uint32_t i, double t) {
   std::int32_t image_x = 0, image_y = 0;
   advance(now, image_x, image_y, t, box_);
   const FixedPoint centre = neighbours_.grid().point(now.x, now.y);
-  if (!whole_ && !core_.hold(neighbours_.grid().row_of(centre))) return false;
+  const std::uint32_t before = row(i), after = neighbours_.grid().row_of(centre);
+  if (!whole_ && !(may_change_lists_at(before) && may_change_lists_at(after))) return false;
   if (!neighbours_.renew(i, cold_[i].centre, centre, records_, !whole_)) return false;
   ++bookkeeping_.list_rebuilds;
   set_centre(i, centre);
-  if (!whole_) concern_if_beside_frozen(i);
+  if (!records_[i].roomy && !whole_ && menace(i).any) concern(i);  // where it is roomy no frozen one is in reach
   if (!first_pass_) find_home(i);
   return true;
 }

@@ -24,6 +24,9 @@ inline namespace SANDGLASS_ISA {
 struct Rows {
   std::uint32_t first = 0, count = 0, side = 1;
 
+  [[nodiscard]] Rows without(std::uint32_t rows) const {
+    return {(first + rows) % side, count > 2 * rows ? count - 2 * rows : 0, side};
+  }
   [[nodiscard]] bool hold(std::uint32_t row) const { return (row >= first ? row - first : row + side - first) < count; }
 };
 
@@ -109,6 +112,10 @@ class alignas(128) Strip {
     std::uint32_t slot;
     friend bool operator<(const FrozenKick& a, const FrozenKick& b) { return a.time > b.time; }  // for a heap
   };
+  struct Menace {  // what the frozen disks of its list mean for a known disk on its present flight
+    bool any = false;
+    double touch = never;  // when one of them can touch it at the earliest
+  };
   struct Left {  // a frozen disk and the row in which it stands
     std::uint32_t slot, row;
   };
@@ -140,6 +147,12 @@ class alignas(128) Strip {
   double kick_alone(std::uint32_t i, double t, double px, double py);
   double kick_pair(std::uint32_t i, std::uint32_t j, double t, double px, double py);
   bool remake_list(std::uint32_t i, double t);
+  void tell_listed(std::uint32_t i);
+  void give_up();
+  [[nodiscard]] bool may_change_lists_at(std::uint32_t row) const {
+    if (first_pass_ && lane_ < 2 * reach_) return core_.without(reach_).hold(row);
+    return core_.hold(row);
+  }
   void check_progress(double t);
   void fetch_ahead();
   void fetch_within_cache(std::size_t n) const;
@@ -196,11 +209,9 @@ class alignas(128) Strip {
   void find_home(std::uint32_t i);
   [[nodiscard]] double freezing_time(std::uint32_t i);
   [[nodiscard]] double earliest_touch(const Record& disk, const Record& ghost) const;
-  [[nodiscard]] double earliest_touch_of_listed(std::uint32_t i) const;
-  template <class Visit>
-  void visit_touched(std::uint32_t i, Visit&& visit) const;
+  [[nodiscard]] Menace menace(std::uint32_t i) const;
+  void menace_listed(std::uint32_t i);
   void concern(std::uint32_t i);
-  void concern_if_beside_frozen(std::uint32_t i);
   void check_speed(const Record& disk);
   void run_window();
   void expect_kick(std::uint32_t frozen_disk);

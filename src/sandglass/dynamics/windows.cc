@@ -45,7 +45,7 @@ std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) {
   // window_part)^-2.
   const double in_lanes = static_cast<double>(strips * lane_) / grid.side();
   window_part_ =
-      tuning_.window_part > 0 ? tuning_.window_part : std::fmax(0.05, std::fmin(2.5 * std::sqrt(in_lanes), 0.4));
+      tuning_.window_part > 0 ? tuning_.window_part : std::fmax(0.05, std::fmin(3 * std::sqrt(in_lanes), 0.4));
   if (tuning_.strip_rows > 0) return strips;
   // Per disk and window: about one and a half times the disks of the lanes are frozen, and half the mean free times in
   // a window are collisions, which take about as long.
@@ -59,8 +59,8 @@ std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) {
 /// beyond the lane's half (see on_frozen_kick).
 std::uint32_t IsaEngine::lane_rows(const Neighbours& neighbours) const {
   const Grid& grid = neighbours.grid();
-  const std::uint32_t apart = grid.rows_within(2 * neighbours.longest_range());
-  if (state_.drive.kind != DriveKind::pair) return apart;
+  const double range = neighbours.longest_range();
+  if (state_.drive.kind != DriveKind::pair) return grid.rows_within(range);
   // A gap is larger than G with a chance of about exp(-P A / T), P the pressure and A the area between two circles,
   // that of contact and one wider by G: what it costs to push all others out of there. Scaled-particle theory: P = n T
   // / (1 - eta)^2. A chance of 10^-9, and half as much again for clusters of inelastic disks.
@@ -73,6 +73,7 @@ std::uint32_t IsaEngine::lane_rows(const Neighbours& neighbours) const {
   const double gap = std::sqrt(contact * contact + area / 3.14159) - contact;
   const double skin = tables_.neighbours.skin;  // two leashes and a way; another way for the growth of the two
   const std::uint32_t half = grid.rows_within(largest + 1.3 * skin + gap);
+  const std::uint32_t apart = grid.rows_within(2 * range);
   return 2 * half > apart ? 2 * half : apart;
 }
 
@@ -89,7 +90,7 @@ void IsaEngine::make_zones(const Neighbours& neighbours) {
     const double contact = state_.mixture.radius[small] + state_.mixture.radius[big];
     const double spacing = tables_.box.length * std::sqrt(1.15 / static_cast<double>(tables_.size));
     const double room = std::fmax(spacing - contact, 0.05 * contact);
-    const double farthest = 4 + std::log(static_cast<double>(tables_.size));
+    const double farthest = std::log(static_cast<double>(tables_.size));
     freezing_depth_ = farthest * contact * std::fmax(1, way() / room);
   }
   const std::uint32_t side = grid.side(), depth = grid.rows_within(freezing_depth_);
@@ -140,6 +141,7 @@ void IsaEngine::divide() {
   }
   whole_.set_calendar(Calendar(state_.now, window, window / 16, between, tables_.out_of_cache));
   replenish();
+  find_homes();
   keep();
 }
 
@@ -187,7 +189,7 @@ void IsaEngine::do_window(double end) {
   ++windows_since_kept_;
   bool crossed = whole_.crossed();
   for (std::uint32_t s = 0; s < n; ++s) crossed = shifted_[s].crossed() || crossed;
-  if (crossed) windows_since_kept_ = windows_between_copies;
+  if (crossed) find_homes();
   hand_in();
   replenish();
   gather_strip_logs();
@@ -233,8 +235,7 @@ void IsaEngine::survey() {
     top_speed_[small] = top_speed_[big] = std::fmax(top_speed_[small], top_speed_[big]);
 }
 
-/// Keeps the disks as they are, for undo. The calendars are made anew: no entry may outlive its disk's stay in a strip
-/// (and the lanes beside it). Lists get more room before one is full: in a window they may not move.
+/// Keeps the disks as they are, for undo. Lists get more room before one is full: in a window they may not move.
 void IsaEngine::keep() {
   survey();
   const std::size_t size = tables_.size, threads = strips_;
@@ -242,17 +243,26 @@ void IsaEngine::keep() {
   crew->work(strips_, [&](unsigned s) {
     for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i) {
       const ColdRecord& cold = tables_.cold[i];
-      tables_.records[i].home = tables_.homes[first_[0].neighbours().grid().row_of(cold.centre)];
       kept_[i] = {tables_.records[i], cold.last_contact, cold.next_kick, cold.kick_count, tables_.images[i]};
     }
-    first_[s].remake_calendar();
-    shifted_[s].clear_outbox();
   });
-  whole_.clear_outbox();
   whole_.neighbours().make_room(longest_list_ + 2);
   kept_tally_ = state_.tally;
   kept_now_ = state_.now;
   windows_since_kept_ = 0;
+}
+
+/// Every disk gets the strip where it stands for its home. The calendars are made anew: no entry may outlive its disk's
+/// stay in a strip (and the lanes beside it).
+void IsaEngine::find_homes() {
+  const std::size_t size = tables_.size, threads = strips_;
+  crew->work(strips_, [&](unsigned s) {
+    for (std::size_t i = s * size / threads; i < (s + 1) * size / threads; ++i)
+      tables_.records[i].home = tables_.homes[first_[0].neighbours().grid().row_of(tables_.cold[i].centre)];
+    first_[s].remake_calendar();
+    shifted_[s].clear_outbox();
+  });
+  whole_.clear_outbox();
 }
 
 /// Goes back to the disks that were kept and does all up to `end` again on one thread; up to `start` it has been
@@ -265,7 +275,7 @@ void IsaEngine::undo(double start, double end) {
     too_deep = too_deep || first_[s].too_deep() || shifted_[s].too_deep();
   }
   if (too_fast) caution_ *= 1.1;
-  if (too_deep) freezing_depth_ *= 1.25;
+  if (too_deep) freezing_depth_ *= 1.5;
   hand_in();
   drop_strip_logs();
   for (std::size_t i = 0; i < tables_.size; ++i) {
