@@ -42,6 +42,8 @@ class IsaEngine final : public Engine {
   void make_zones(const Neighbours& neighbours);
   void divide();
   void survey();
+  [[nodiscard]] double balance() const;
+  [[nodiscard]] bool temperature_has_changed() const;
   void keep();
   void find_homes();
   [[nodiscard]] double way() const { return window_part_ * tables_.neighbours.skin; }
@@ -67,6 +69,7 @@ class IsaEngine final : public Engine {
   double window_part_ = 0;            // how far the fastest disk may fly in a window, in skins
   double top_speed_[species_count] = {0, 0};
   std::uint32_t longest_list_ = 0;
+  double surveyed_energy_ = 0, surveyed_balance_ = 0;  // at the last survey
   double caution_ = 1;         // grows with every window that had to be undone since a disk was too fast
   double freezing_depth_ = 0;  // how far from the lanes disks are frozen; grows where that is not enough
   struct KeptDisk {
@@ -78,7 +81,7 @@ class IsaEngine final : public Engine {
   Array<KeptDisk> kept_;  // the disks some windows ago
   Tally kept_tally_;
   double kept_now_ = 0;
-  static constexpr unsigned windows_between_copies = 32;  // at most
+  static constexpr unsigned windows_between_copies = 96;  // a copy takes about as long as a window
   unsigned windows_since_kept_ = 0;
   std::uint64_t windows_done_ = 0, undone_ = 0;  // since the disks were loaded
 };

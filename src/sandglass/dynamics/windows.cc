@@ -18,7 +18,10 @@ inline namespace SANDGLASS_ISA {
 
 void IsaEngine::run(double end) {
   while (state_.now < end && strips_ > 1) {
-    if (windows_since_kept_ >= windows_between_copies) keep();
+    if (windows_since_kept_ >= windows_between_copies)
+      keep();
+    else if (temperature_has_changed())
+      survey();
     const double windows = std::ceil((end - state_.now) / window_length());
     do_window(windows > 1 ? state_.now + (end - state_.now) / windows : end);
   }
@@ -222,8 +225,10 @@ void IsaEngine::survey() {
     parts[s] = part;
   });
   double energy = 0;
+  surveyed_balance_ = balance();
   longest_list_ = 0;
   for (const Part& part : parts) energy += part.energy, longest_list_ = std::max(longest_list_, part.longest_list);
+  surveyed_energy_ = energy;
   for (const int species : {small, big}) {
     double fastest = 0;
     for (const Part& part : parts) fastest = std::fmax(fastest, part.fastest[species]);
@@ -233,6 +238,15 @@ void IsaEngine::survey() {
   }
   if (state_.mixture.radius[small] == state_.mixture.radius[big])  // by which species are told apart
     top_speed_[small] = top_speed_[big] = std::fmax(top_speed_[small], top_speed_[big]);
+}
+
+/// Energy gained less energy lost, up to now.
+double IsaEngine::balance() const { return state_.tally.injected.value() - state_.tally.dissipated.value(); }
+
+/// Since the survey, and by more than fluctuates: in a fluid that cools disks would be trusted to be far too fast.
+bool IsaEngine::temperature_has_changed() const {
+  const double energy = surveyed_energy_ + balance() - surveyed_balance_;
+  return energy < 0.7 * surveyed_energy_ || energy > 1.4 * surveyed_energy_;
 }
 
 /// Keeps the disks as they are, for undo. Lists get more room before one is full: in a window they may not move.
