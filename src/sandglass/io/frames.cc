@@ -127,7 +127,14 @@ void FrameReader::set_species(const RawFrame& first) {
 }
 
 bool FrameReader::next(Frame& frame) {
-  if (!pending_ && !source_(raw_)) return false;
+  if (!pending_ && !source_(raw_)) {
+    if (fastest_ > 0 && fastest_ < least_speed)
+      refuse(fmt::format(
+          "all disks are slower than {:g} radii of the smallest disk per unit of time, and sums of squares would lose "
+          "their digits: write times and velocities in a longer unit of time",
+          least_speed));
+    return false;
+  }
   pending_ = false;
   const std::size_t n = disks_.size();
   if (raw_.x.size() != n) refuse(fmt::format("frame {} has {} particles, the first one {}", frames_, raw_.x.size(), n));
@@ -161,11 +168,8 @@ bool FrameReader::next(Frame& frame) {
                       "squares would overflow: write times and velocities in a shorter unit of time",
                       frames_, most_speed));
   }
-  if (fastest > 0 && fastest < least_speed)
-    refuse(fmt::format(
-        "all disks of frame {} are slower than {:g} radii of the smallest disk per unit of time, and sums of "
-        "squares would lose their digits: write times and velocities in a longer unit of time",
-        frames_, least_speed));
+  slow_frames_ += fastest > 0 && fastest < least_speed;
+  fastest_ = std::max(fastest_, fastest);
   ++frames_;
   return true;
 }

@@ -54,6 +54,8 @@ class FrameReader {
   [[nodiscard]] bool has_velocities() const { return has_velocities_; }
   [[nodiscard]] bool counts_collisions() const { return counts_collisions_; }
   [[nodiscard]] double largest_step() const { return largest_step_; }  ///< in boxes, if unwrapped by nearest image
+  /// In how many frames so far all disks were so slow that sums of their squares lose digits.
+  [[nodiscard]] std::uint64_t slow_frames() const { return slow_frames_; }
   /// What was assumed, in sentences.
   [[nodiscard]] const std::vector<std::string>& decisions() const { return decisions_; }
 
@@ -69,7 +71,8 @@ class FrameReader {
   RawFrames source_;
   RawFrame raw_;
   bool pending_ = false;  ///< raw_ holds a frame not yet handed out
-  std::uint64_t frames_ = 0;
+  std::uint64_t frames_ = 0, slow_frames_ = 0;
+  double fastest_ = 0;  ///< the largest component of a velocity so far
   State disks_;
   double length_unit_ = 1;
   bool has_velocities_ = false, counts_collisions_ = false;

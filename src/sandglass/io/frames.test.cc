@@ -108,6 +108,13 @@ TEST_CASE("velocities whose squares cannot be summed are refused, and the way ou
   CHECK(refused("9e-6 0").find("a longer unit of time") != std::string::npos);
   CHECK_NOTHROW(read("0 0"));
   CHECK_NOTHROW(read("-1e9 1e-5"));
+
+  // A fluid that has cooled is read, and the frame counted.
+  const std::string head = "2\nLattice=\"40 0 0 0 40 0 0 0 1\" Properties=pos:R:2:velo:R:2:radius:R:1\n";
+  spill(folder / "cooled.xyz", head + "1 1 1 0 1\n9 9 0 0 1\n" + head + "1 1 1e-6 0 1\n9 9 0 0 1\n");
+  FrameReader reader(folder / "cooled.xyz", {});
+  CHECK(all_frames(reader).size() == 2);
+  CHECK(reader.slow_frames() == 1);
 }
 
 TEST_CASE("whatever is done to a file, it is read or refused") {
