@@ -64,16 +64,18 @@ void Strip::menace_listed(std::uint32_t i) {
     const std::uint32_t* const list = neighbours_.list_from(i, first);
     Vector other[8];
     load_columns(records_, list, other);
+    const Mask known = zero <= other[5];
+    if (known.lanes() == 0) continue;
     const Vector t = max(other[4], start), flight = t - other[4];
     const Vector rx = nearest(fma(other[2], flight, other[0]) - x, box_);
     const Vector ry = nearest(fma(other[3], flight, other[1]) - y, box_);
     const Vector touch = touch_times(t, start, rx, ry, other[2], other[3], radius + other[6], speed);
-    const Mask known = zero <= other[5], in_window = touch <= Vector::all(tables_->window.end);
+    const Mask sooner = known & (touch < other[5]) & (touch <= Vector::all(tables_->window.end));
     alignas(64) double times[Vector::width];
     touch.store(times);
     for (unsigned lanes = first_pass_ ? known.lanes() : 0; lanes != 0; lanes &= lanes - 1)
       concern(list[__builtin_ctz(lanes)]);
-    for (unsigned lanes = (known & in_window & (touch < other[5])).lanes(); lanes != 0; lanes &= lanes - 1) {
+    for (unsigned lanes = sooner.lanes(); lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
       if (!is_done(list[lane])) freeze_no_later(list[lane], times[lane]);  // others are never met in this window
     }

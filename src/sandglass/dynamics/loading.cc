@@ -105,8 +105,8 @@ double IsaEngine::default_skin() const {
 }
 
 /// A line of the grid has room for five disks: three to a cell, or two where they are not packed closely (packing
-/// fractions below 0.4) and more cells would be too full. With threads their size is such that some rows are just two
-/// ranges high: lanes are made of whole rows.
+/// fractions below 0.4) and more cells would be too full. With threads their size is such that some rows are just one
+/// range high: lanes are made of whole rows.
 double IsaEngine::default_cell_size() const {
   if (tuning_.cell_size > 0) return tuning_.cell_size;
   const auto& radius = state_.mixture.radius;
@@ -114,7 +114,7 @@ double IsaEngine::default_cell_size() const {
   const double contact = radius[small] + radius[big];
   const double cell = std::sqrt((contact * contact > 0.5 * area_per_disk ? 3 : 2) * area_per_disk);
   const double range = 2 * std::fmax(radius[small], radius[big]) + default_skin();
-  return crew ? (1 + 1e-4) * 2 * range / std::fmax(1, std::round(2 * range / cell)) : cell;
+  return crew ? (1 + 1e-4) * range / std::fmax(1, std::round(range / cell)) : cell;
 }
 
 /// A calendar for `size` disks whose next events are `lead` ahead. The more events in a window, the more are entered

@@ -149,9 +149,11 @@ class alignas(128) Strip {
   bool remake_list(std::uint32_t i, double t);
   void tell_listed(std::uint32_t i);
   void give_up();
+  /// Whether the list of a disk that stands in this row may be made anew: those of its neighbours change. In the first
+  /// pass the disks of a narrow lane are also seen from its other side.
   [[nodiscard]] bool may_change_lists_at(std::uint32_t row) const {
-    if (first_pass_ && lane_ < 2 * reach_) return core_.without(reach_).hold(row);
-    return core_.hold(row);
+    const bool narrow = first_pass_ && lane_ < 2 * reach_;
+    return (narrow ? core_.without(reach_) : core_).hold(row);
   }
   void check_progress(double t);
   void fetch_ahead();

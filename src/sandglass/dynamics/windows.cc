@@ -5,8 +5,9 @@
 //  Second pass: strips around the former lanes go on with the frozen disks, side by side again. What is near their own
 //    borders, in the middle of the former strips, stays frozen.
 //  Last pass: one thread does the rest, most often nothing.
-// A strip sees and changes what its disks have in their lists and, in the second pass, the partners of those: lanes are
-// two such ranges wide, four in the second pass, so that no two threads meet.
+// A strip sees what its disks have in their lists. In the first pass both strips beside a lane see its disks, and
+// neither changes them: lanes are one such range wide. In the second a strip changes lists, too, and the partners of the
+// listed: four ranges, so that no two threads meet.
 #include <algorithm>
 #include <cmath>
 
@@ -50,16 +51,16 @@ std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) {
   window_part_ =
       tuning_.window_part > 0 ? tuning_.window_part : std::fmax(0.05, std::fmin(3 * std::sqrt(in_lanes), 0.4));
   if (tuning_.strip_rows > 0) return strips;
-  // Per disk and window: about one and a half times the disks of the lanes are frozen, and half the mean free times in
-  // a window are collisions, which take about as long.
+  // Per disk and window: in a dilute system, where it may not pay, about one and a half times the disks of the lanes are
+  // frozen, and half the mean free times in a window are collisions, which take about as long.
   strips_ = strips;
   survey();
   const double collisions = 0.5 * window_length() * beats_per_epoch / state_.epoch_length;
   return strips / (1 + 1.5 * in_lanes / collisions) > 1.2 ? strips : 1;
 }
 
-/// Wide enough that no two strips touch the same disk; with pair kicks, that hardly one of a frozen disk may reach
-/// beyond the lane's half (see on_frozen_kick).
+/// Wide enough that no two strips have each other's disks in their lists; with pair kicks, that each has half of the
+/// lane for itself and hardly a kick of a frozen disk may reach beyond that (see on_frozen_kick).
 std::uint32_t IsaEngine::lane_rows(const Neighbours& neighbours) const {
   const Grid& grid = neighbours.grid();
   const double range = neighbours.longest_range();
