@@ -6,8 +6,8 @@
 //    borders, in the middle of the former strips, stays frozen.
 //  Last pass: one thread does the rest, most often nothing.
 // A strip sees what its disks have in their lists. In the first pass both strips beside a lane see its disks, and
-// neither changes them: lanes are one such range wide. In the second a strip changes lists, too, and the partners of the
-// listed: four ranges, so that no two threads meet.
+// neither changes them: lanes are one such range wide. In the second a strip changes lists, too, and the partners of
+// the listed: four ranges, so that no two threads meet.
 #include <algorithm>
 #include <cmath>
 
@@ -51,8 +51,8 @@ std::uint32_t IsaEngine::strips_for_threads(const Neighbours& neighbours) {
   window_part_ =
       tuning_.window_part > 0 ? tuning_.window_part : std::fmax(0.05, std::fmin(3 * std::sqrt(in_lanes), 0.4));
   if (tuning_.strip_rows > 0) return strips;
-  // Per disk and window: in a dilute system, where it may not pay, about one and a half times the disks of the lanes are
-  // frozen, and half the mean free times in a window are collisions, which take about as long.
+  // Per disk and window: in a dilute system, where it may not pay, about one and a half times the disks of the lanes
+  // are frozen, and half the mean free times in a window are collisions, which take about as long.
   strips_ = strips;
   survey();
   const double collisions = 0.5 * window_length() * beats_per_epoch / state_.epoch_length;
