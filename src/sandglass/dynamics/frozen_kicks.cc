@@ -32,7 +32,7 @@ double Strip::growth(std::uint32_t frozen_disk, double t) const {
 /// The events of the window, and what happens to disks when the clocks of frozen ones ring.
 void Strip::run_window() {
   const double end = tables_->window.end;
-  for (;;) {
+  while (!failed_) {
     const double ring = frozen_kicks_.empty() ? never : frozen_kicks_[0].time;
     run(std::fmin(end, std::nextafter(ring, -never)));
     if (failed_ || frozen_kicks_.empty()) return;

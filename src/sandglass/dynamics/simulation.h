@@ -73,7 +73,8 @@ class Simulation {
   struct Bookkeeping {
     std::uint64_t predictions = 0, orphans = 0, list_rebuilds = 0, wide_partner_searches = 0;
     // Where several threads work: windows; disks frozen in them, by passes, those resumed in the last one alone;
-    // windows in which a frozen disk was faster than trusted or might kick too far, and which were done again.
+    // windows that were done again: a frozen disk was faster than trusted, might kick too far, or stood too far from
+    // the lanes; or a list was full.
     std::uint64_t windows = 0, frozen = 0, left_over = 0, windows_undone = 0;
   };
   [[nodiscard]] Bookkeeping bookkeeping() const;

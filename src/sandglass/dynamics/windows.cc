@@ -6,8 +6,8 @@
 //    borders, in the middle of the former strips, stays frozen.
 //  Last pass: one thread does the rest, most often nothing.
 // A strip sees what its disks have in their lists. In the first pass both strips beside a lane see its disks, and
-// neither changes them: lanes are one such range wide. In the second a strip changes lists, too, and the partners of
-// the listed: four ranges, so that no two threads meet.
+// neither changes them: lanes are one such range wide (with pair kicks two at least, and each strip has half). In the
+// second a strip changes lists, too, and the partners of the listed: four ranges, so that no two threads meet.
 #include <algorithm>
 #include <cmath>
 
@@ -89,13 +89,13 @@ void IsaEngine::make_zones(const Neighbours& neighbours) {
   const Grid& grid = neighbours.grid();
   if (freezing_depth_ == 0) freezing_depth_ = tuning_.freezing_depth;
   if (freezing_depth_ == 0) {
-    // Freezing goes on from disk to disk, the sooner the less room there is between them: in some five of them during a
-    // window, and farther in the farthest of many places.
+    // Freezing goes on from disk to disk, the sooner the less room there is between them, and farthest in the farthest
+    // of many places.
     const double contact = state_.mixture.radius[small] + state_.mixture.radius[big];
     const double spacing = tables_.box.length * std::sqrt(1.15 / static_cast<double>(tables_.size));
     const double room = std::fmax(spacing - contact, 0.05 * contact);
     const double farthest = std::log(static_cast<double>(tables_.size));
-    freezing_depth_ = farthest * contact * std::fmax(1, way() / room);
+    freezing_depth_ = std::fmax(farthest * contact * std::fmax(1, way() / room), 2.5 * neighbours.longest_range());
   }
   const std::uint32_t side = grid.side(), depth = grid.rows_within(freezing_depth_);
   const std::uint32_t reach = grid.rows_within(neighbours.longest_range() + way());
@@ -145,7 +145,6 @@ void IsaEngine::divide() {
   }
   whole_.set_calendar(Calendar(state_.now, window, window / 16, between, tables_.out_of_cache));
   replenish();
-  find_homes();
   keep();
 }
 
@@ -250,8 +249,11 @@ bool IsaEngine::temperature_has_changed() const {
   return energy < 0.7 * surveyed_energy_ || energy > 1.4 * surveyed_energy_;
 }
 
-/// Keeps the disks as they are, for undo. Lists get more room before one is full: in a window they may not move.
+/// Keeps the disks as they are, for undo. Lists get more room before one is full: in a window they may not move. The
+/// calendars are made anew as well: whenever a disk is resumed its next kick is entered again, and rare kicks would
+/// pile up.
 void IsaEngine::keep() {
+  find_homes();
   survey();
   const std::size_t size = tables_.size, threads = strips_;
   if (kept_.size() != size) kept_ = Array<KeptDisk>(size);
@@ -261,7 +263,7 @@ void IsaEngine::keep() {
       kept_[i] = {tables_.records[i], cold.last_contact, cold.next_kick, cold.kick_count, tables_.images[i]};
     }
   });
-  whole_.neighbours().make_room(longest_list_ + 2);
+  whole_.neighbours().make_room(longest_list_ + std::max(2u, longest_list_ / 5));
   kept_tally_ = state_.tally;
   kept_now_ = state_.now;
   windows_since_kept_ = 0;

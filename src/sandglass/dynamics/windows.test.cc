@@ -78,7 +78,7 @@ TEST_CASE("several threads do the events of one, to the same bits") {
 }
 
 TEST_CASE("disks that fly from strip to strip leave no event behind") {
-  // So few that they go far between collisions: through a lane of some eighteen radii while calendars are kept, with
+  // So few that they go far between collisions: through a lane of some nine radii while calendars are kept, with
   // kicks that were foreseen in the strip they come from. (A strip that does an event of another's disk fails an
   // assertion.)
   for (const unsigned threads : {2u, 3u, 4u}) {
@@ -111,7 +111,7 @@ TEST_CASE("every number of threads gives the same hash, with strips as they are 
     const State start = random_state(system);
     std::string expected;
     for (const unsigned threads : {1u, 2u, 3u, 4u, 8u, 16u}) {
-      // As high as three wide lanes of six rows, which is the least that is taken to be worth it.
+      // Higher than three wide lanes, which is the least that is taken to be worth it.
       Simulation simulation(start, {.threads = threads, .strip_rows = 18});
       simulation.run_until(0.7);
       if (threads == 1) expected = state_hash(simulation.state());

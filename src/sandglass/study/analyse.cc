@@ -188,10 +188,10 @@ Analysis analyse(const std::filesystem::path& trajectory, const std::filesystem:
                     "may be too far apart for that, and displacements too short. Store image counts, or more frames.",
                     reader.largest_step()));
   if (reader.slow_frames() > 0)
-    summary.warnings.push_back(
-        fmt::format("In {} frames no disk is faster than 10^-5 radii of the smallest per unit of time, as in a fluid "
-                    "that has cooled: what is said of velocities there has few digits, or none.",
-                    reader.slow_frames()));
+    summary.warnings.push_back(fmt::format(
+        "In {} of the frames read no disk is faster than 10^-5 radii of the smallest per unit of time, as in a fluid "
+        "that has cooled: what is said of velocities there has few digits, or none.",
+        reader.slow_frames()));
   write_observables(folder / "observables.h5", datasets);
   write_summary(folder / "summary.json", summary);
   return {std::move(summary), state_at(disks, frame)};
