@@ -24,6 +24,7 @@ inline namespace SANDGLASS_ISA {
 struct Rows {
   std::uint32_t first = 0, count = 0, side = 1;
 
+  /// Less so many at either end.
   [[nodiscard]] Rows without(std::uint32_t rows) const {
     return {(first + rows) % side, count > 2 * rows ? count - 2 * rows : 0, side};
   }
