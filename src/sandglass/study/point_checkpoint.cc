@@ -87,7 +87,9 @@ void PointRun::checkpoint_now_and_then() {
 }
 
 void PointRun::write_checkpoint_now() {
-  watched([this] { watch_.inspect(simulation()); });  // a checkpoint is good
+  // A checkpoint is good: what had failed before the disks were copied is found, and what fails later is not in it.
+  const State state = simulation().state();
+  watched([this] { watch_.inspect(simulation()); });
   facts_.wall_seconds = earlier_wall_seconds_ + seconds_since(started_);
   std::vector<FieldGroup> kept;
   if (calibrator_) {
@@ -100,7 +102,7 @@ void PointRun::write_checkpoint_now() {
     frames_->sync();
   }
   kept.push_back(own_fields());
-  write_checkpoint(folder_.checkpoint(), simulation().state(), config_to_toml(config_), kept);
+  write_checkpoint(folder_.checkpoint(), state, config_to_toml(config_), kept);
   if (measurement_) write_observables(folder_.observables(), measurement_->results());
   last_checkpoint_ = Clock::now();
 }
